@@ -1,0 +1,47 @@
+# One command a chore, the same here and in CI. Needs python3 (3.11 or later), make and git; the rest is set up in .venv.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+PYTEST := $(BIN)/python -m pytest
+
+.PHONY: help demo test test-fast lint plugin clean
+
+help:
+	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
+	@echo "make test       all tests, with numba and then without it"
+	@echo "make test-fast  the core's tests on small inputs, with numba only"
+	@echo "make lint       ruff, mypy and numpydoc"
+	@echo "make plugin     the QGIS plugin as dist/terrain_wavelets.zip, from the last commit"
+	@echo "make clean      remove what the above made, except $(VENV)"
+
+# A stamp for each set of packages, so that a second run starts at once.
+$(BIN)/.installed-%: pyproject.toml scripts/setup-venv.sh
+	@bash scripts/setup-venv.sh $(VENV) $(PYTHON) $*
+	@touch $@
+
+demo: $(BIN)/.installed-demo
+	@$(BIN)/python examples/demo.py demo_output
+
+# The kernels run compiled, then as the plain Python that is left where numba is absent.
+test: $(BIN)/.installed-dev
+	$(PYTEST)
+	TERRAIN_WAVELETS_NO_NUMBA=1 $(PYTEST) tests/core -m "not large and not data"
+
+test-fast: $(BIN)/.installed-dev
+	$(PYTEST) tests/core tests/test_imports.py -m "not large and not data" -x -q
+
+lint: $(BIN)/.installed-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/python -m numpydoc.hooks.validate_docstrings $$(git ls-files 'wavelet_core/*.py' 'wavelet_gis/*.py')
+
+plugin:
+	@mkdir -p dist
+	git archive --format=zip --prefix=terrain_wavelets/ --output=dist/terrain_wavelets.zip HEAD
+	@echo dist/terrain_wavelets.zip
+
+clean:
+	rm -rf build dist demo_output *.egg-info .pytest_cache .hypothesis .ruff_cache .mypy_cache
+	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +
