@@ -1,4 +1,4 @@
-"""Imports point one way, plugin -> wavelet_gis -> wavelet_core; no layer imports more than it may."""
+"""Imports point one way, plugin -> wavelet_gis -> wavelet_core, and no layer imports too much."""
 
 import ast
 import sys
