@@ -60,7 +60,7 @@ fi
 # qgis brings qgis_process, python3-qgis the bindings and the Processing plugin.
 $install "${release[@]}" qgis python3-qgis qgis-providers
 # The rest from the release itself: what the plugin needs (scipy) and what makes it fast (numba).
-$install python3-scipy python3-numba python3-venv python3-gdal
+$install python3-scipy python3-numba python3-venv python3-gdal proj-data
 
 if ! has_qgis; then
     say "QGIS was installed, but '$python' cannot import qgis.core and scipy; see the messages above"
