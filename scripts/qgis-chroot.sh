@@ -40,6 +40,8 @@ make_chroot() {
     done
     printf 'Dpkg::Use-Pty "0";\nAcquire::Retries "3";\nAPT::Install-Recommends "false";\n' >"$root/etc/apt/apt.conf.d/90terrain-wavelets"
     inside "apt-get update -q && apt-get install -y -q ${packages[*]} && apt-get clean" >&2
+    # What Debian does not carry; the chroot is ours alone, so its own Python may take it.
+    inside "python3 -m pip install -q --break-system-packages --root-user-action=ignore PythonCDT lazrs" >&2
     touch "$root/.terrain-wavelets-ready"
 }
 
