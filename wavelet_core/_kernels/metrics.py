@@ -1,0 +1,87 @@
+"""Kernels of :mod:`wavelet_core.metrics`: points sorted into cells, faces laid over them."""
+
+import math
+
+import numpy as np
+
+from ._jit import njit
+
+# a point this far outside a face, in barycentric coordinates, still counts as on it
+EDGE_TOLERANCE = 1e-9
+
+
+# plan (n_points, 2) float64; the grid has n_columns x n_rows square cells of `size` from (x0, y0);
+# cell_indptr (n_cells + 1,) int64 and order (n_points,) int64, filled
+@njit
+def sort_into_cells(plan, x0, y0, size, n_columns, n_rows, cell_indptr, order):
+    n = plan.shape[0]
+    cell = np.empty(n, dtype=np.int64)
+    for p in range(n):
+        column = min(int((plan[p, 0] - x0) / size), n_columns - 1)
+        row = min(int((plan[p, 1] - y0) / size), n_rows - 1)
+        cell[p] = row * n_columns + column
+        cell_indptr[cell[p] + 1] += 1
+    for c in range(n_columns * n_rows):
+        cell_indptr[c + 1] += cell_indptr[c]
+    cursor = cell_indptr[:-1].copy()
+    for p in range(n):
+        order[cursor[cell[p]]] = p
+        cursor[cell[p]] += 1
+
+
+# vertices (n, 3), faces (n_faces, 3) int, points (n_points, 3) float64;
+# error (n_points,) float64, NaN on entry: filled with z(point) - z(face) by the first face
+@njit
+def errors_under_faces(
+    vertices, faces, points, x0, y0, size, n_columns, n_rows, cell_indptr, order, error
+):
+    for face in range(faces.shape[0]):
+        a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
+        ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
+        bx, by, bz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
+        cx, cy, cz = vertices[c, 0] - ax, vertices[c, 1] - ay, vertices[c, 2] - az
+        doubled_area = bx * cy - by * cx
+        if doubled_area == 0.0:
+            continue
+        margin = EDGE_TOLERANCE * (abs(bx) + abs(by) + abs(cx) + abs(cy))
+        low, high = ay + min(0.0, by, cy) - margin, ay + max(0.0, by, cy) + margin
+        first_row = max(int(math.floor((low - y0) / size)), 0)
+        last_row = min(int(math.floor((high - y0) / size)), n_rows - 1)
+        for row in range(first_row, last_row + 1):
+            bottom, top = y0 + row * size - margin, y0 + (row + 1) * size + margin
+            left, right = np.inf, -np.inf
+            for side in range(3):  # extent in x of the face between bottom and top
+                if side == 0:
+                    px, py, qx, qy = 0.0, 0.0, bx, by
+                elif side == 1:
+                    px, py, qx, qy = bx, by, cx, cy
+                else:
+                    px, py, qx, qy = cx, cy, 0.0, 0.0
+                px, py, qx, qy = px + ax, py + ay, qx + ax, qy + ay
+                if (py < bottom and qy < bottom) or (py > top and qy > top):
+                    continue
+                t_low, t_high = 0.0, 1.0
+                if py != qy:
+                    t1, t2 = (bottom - py) / (qy - py), (top - py) / (qy - py)
+                    t_low, t_high = max(0.0, min(t1, t2)), min(1.0, max(t1, t2))
+                x1, x2 = px + t_low * (qx - px), px + t_high * (qx - px)
+                left, right = min(left, x1, x2), max(right, x1, x2)
+            if left > right:
+                continue
+            first = max(int(math.floor((left - margin - x0) / size)), 0)
+            last = min(int(math.floor((right + margin - x0) / size)), n_columns - 1)
+            for k in range(
+                cell_indptr[row * n_columns + min(first, n_columns)],
+                cell_indptr[row * n_columns + max(last + 1, min(first, n_columns))],
+            ):
+                p = order[k]
+                if not math.isnan(error[p]):
+                    continue
+                dx, dy = points[p, 0] - ax, points[p, 1] - ay
+                at_b = (dx * cy - dy * cx) / doubled_area
+                at_c = (bx * dy - by * dx) / doubled_area
+                if at_b < -EDGE_TOLERANCE or at_c < -EDGE_TOLERANCE:
+                    continue
+                if at_b + at_c > 1.0 + EDGE_TOLERANCE:
+                    continue
+                error[p] = points[p, 2] - (az + at_b * bz + at_c * cz)

@@ -1,0 +1,51 @@
+"""Kernels of :mod:`wavelet_core.update`: the sequential one-ring-mean update."""
+
+from ._jit import njit
+
+
+# The constant that Eq. 46 adds to the unlocked ring of one odd vertex, for one channel.
+@njit
+def ring_constant(first, last, columns, weights, detail, locked, even, channel):
+    n_free, total = 0, 0.0
+    for k in range(first, last):
+        if not locked[columns[k]]:
+            n_free += 1
+            total += weights[k]
+    if n_free == 0:
+        return 0.0
+    constant = detail / (n_free + 1.0)
+    for k in range(first, last):
+        if not locked[columns[k]]:
+            share = weights[k] / total if abs(total) > 1e-12 else 1.0 / n_free
+            constant += (
+                (n_free * share - 1.0) / (n_free * (n_free + 1.0)) * even[columns[k], channel]
+            )
+    return constant
+
+
+# indptr (n_odd + 1,) int64, columns (nnz,) int32, weights (nnz,), details (n_odd, n_channels),
+# locked (n_even,) bool; even (n_even, n_channels) float64, changed
+@njit
+def add_ring_means(indptr, columns, weights, details, locked, even):
+    for row in range(details.shape[0]):
+        for channel in range(details.shape[1]):
+            constant = ring_constant(
+                indptr[row], indptr[row + 1], columns, weights, details[row, channel], locked,
+                even, channel,
+            )  # fmt: skip
+            for k in range(indptr[row], indptr[row + 1]):
+                if not locked[columns[k]]:
+                    even[columns[k], channel] += constant
+
+
+@njit
+def subtract_ring_means(indptr, columns, weights, details, locked, even):
+    for row in range(details.shape[0] - 1, -1, -1):
+        for channel in range(details.shape[1]):
+            constant = ring_constant(
+                indptr[row], indptr[row + 1], columns, weights, details[row, channel], locked,
+                even, channel,
+            )  # fmt: skip
+            for k in range(indptr[row], indptr[row + 1]):
+                if not locked[columns[k]]:
+                    even[columns[k], channel] -= constant

@@ -1,0 +1,117 @@
+"""Checks at the public door: dtype, shape, finiteness and index range."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import MeshError
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+def frozen(array: NDArray) -> NDArray:
+    """Return the array, C-contiguous and read-only; a view is never made writable again."""
+    array = np.ascontiguousarray(array)
+    array.flags.writeable = False
+    return array
+
+
+def as_vertices(vertices: ArrayLike) -> FloatArray:
+    """Return ``(n, 3)`` float64 coordinates that are all finite.
+
+    Raises
+    ------
+    MeshError
+        Wrong shape, or a coordinate that is NaN or infinite.
+    """
+    array = np.array(vertices, dtype=np.float64, order="C")
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise MeshError(f"vertices have shape {array.shape}; give (n_vertices, 3): x, y, z.")
+    _require_finite(array, "vertex", "coordinate")
+    return array
+
+
+def as_faces(faces: ArrayLike, n_vertices: int) -> IntArray:
+    """Return ``(m, 3)`` int64 faces with three different vertices each, all of them in range.
+
+    Raises
+    ------
+    MeshError
+        Wrong shape or type, an index out of range, or a face that uses a vertex twice.
+    """
+    array = np.array(faces, order="C")
+    if array.size == 0:
+        return np.empty((0, 3), dtype=np.int64)
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise MeshError(f"faces have shape {array.shape}; give (n_faces, 3) vertex indices.")
+    if array.dtype.kind not in "iu":
+        raise MeshError(f"faces have dtype {array.dtype}; give integer vertex indices.")
+    array = array.astype(np.int64, copy=False)
+    outside = ((array < 0) | (array >= n_vertices)).any(axis=1)
+    if outside.any():
+        face = int(np.argmax(outside))
+        raise MeshError(
+            f"face {face} uses vertex {array[face].tolist()}, but the vertices are 0 to "
+            f"{n_vertices - 1}; drop the face or give all vertices.",
+            face,
+        )
+    a, b, c = array.T
+    twice = (a == b) | (b == c) | (c == a)
+    if twice.any():
+        face = int(np.argmax(twice))
+        raise MeshError(
+            f"face {face} uses a vertex twice {array[face].tolist()}, so it has no area; "
+            "remove it from the input triangulation.",
+            face,
+        )
+    return array
+
+
+def as_attributes(
+    attributes: ArrayLike | None, names: Sequence[str], n_vertices: int
+) -> tuple[FloatArray, tuple[str, ...]]:
+    """Return ``(n, k)`` float64 attributes and their ``k`` different names.
+
+    Raises
+    ------
+    MeshError
+        Shapes that do not fit, names that repeat or clash with x, y, z, or a value not finite.
+    """
+    names = tuple(str(name) for name in names)
+    if attributes is None:
+        if names:
+            raise MeshError(f"attribute names {names} without attributes; give both or neither.")
+        return np.empty((n_vertices, 0)), ()
+    array = np.array(attributes, dtype=np.float64, order="C")
+    if array.ndim == 1:
+        array = array[:, None]
+    if array.ndim != 2 or array.shape[0] != n_vertices:
+        raise MeshError(
+            f"attributes have shape {array.shape}; give one row for each of {n_vertices} vertices."
+        )
+    if not names:
+        names = tuple(f"attribute_{k}" for k in range(array.shape[1]))
+    if len(names) != array.shape[1] or len(set(names)) != len(names):
+        raise MeshError(
+            f"{array.shape[1]} attributes have the names {names}; give one different name each."
+        )
+    clash = set(names) & {"x", "y", "z"}
+    if clash:
+        raise MeshError(f"attribute {sorted(clash)[0]!r} has a coordinate's name; rename it.")
+    _require_finite(array, "vertex", "attribute")
+    return array, names
+
+
+def _require_finite(array: FloatArray, row_name: str, value_name: str) -> None:
+    bad = ~np.isfinite(array).all(axis=1)
+    if bad.any():
+        row = int(np.argmax(bad))
+        raise MeshError(
+            f"{row_name} {row} has a {value_name} that is not a finite number "
+            f"({array[row].tolist()}); drop the {row_name} or fill the value.",
+            row,
+        )

@@ -1,0 +1,46 @@
+"""Half-edge collapses: the rules they obey, and the mesh they leave.
+
+Which kind of vertex may collapse onto which neighbour::
+
+    removed v    onto any neighbour    onto an outline neighbour, along the outline
+    interior     yes                   yes
+    outline      no                    yes: always with signal "xyz"; with signal "z" only
+                                       where the outline runs straight through v
+    corner       no                    no (a vertex with a single face)
+    pinch        no                    no
+    isolated     no                    no
+    locked       no                    no
+
+and only if no new face is flipped or flat, no neighbour loses its last face, and the link
+condition holds, also against edges that earlier collapses of the same pass made (Fig. 3).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def even_positions(odd: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
+    """Return the ids of the vertices that stay, ascending: the complement of ``odd``."""
+    stays = np.ones(n_vertices, dtype=bool)
+    stays[odd] = False
+    return np.flatnonzero(stays).astype(np.int32)
+
+
+def merge_map(
+    odd: NDArray[np.int32], target: NDArray[np.int32], n_vertices: int
+) -> NDArray[np.int32]:
+    """Return for every vertex of a level its id in the coarser one, odd ones at their target."""
+    stays = np.ones(n_vertices, dtype=bool)
+    stays[odd] = False
+    position = (np.cumsum(stays) - 1).astype(np.int32)
+    position[odd] = position[target]
+    return position
+
+
+def merged_faces(faces: NDArray[np.int32], position: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return the faces after the collapses; those that lost their area have dropped out."""
+    moved = position[faces]
+    a, b, c = moved.T
+    return moved[(a != b) & (b != c) & (c != a)]
