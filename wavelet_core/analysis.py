@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from ._kernels._jit import announce_fallback
 from ._validate import FloatArray, frozen
 from .collapse import even_positions, merge_map, merged_faces
-from .connectivity import Connectivity, build_connectivity
+from .connectivity import build_connectivity
 from .errors import Cancelled, MeshError, OptionError
 from .lifting import Step, analyse_level
 from .mesh import TriangleMesh
 from .metrics import surface_errors
 from .options import AnalysisOptions, resolve_options
-from .partition import ColouringPartition, LevelView, Partition, QuadricPartition, Split
+from .partition import ColouringPartition, LevelView, Partition, QuadricPartition
 from .prediction import Removal, predict
 from .pyramid import Pyramid
 

@@ -9,6 +9,7 @@ of threads.
 
 from __future__ import annotations
 
+import itertools
 import os
 import warnings
 from collections.abc import Callable
@@ -96,7 +97,7 @@ def run_in_ranges(kernel: Callable[..., Any], n_items: int, *arguments: Any) -> 
     with ThreadPoolExecutor(threads) as pool:
         jobs = [
             pool.submit(kernel, start, stop, *arguments)
-            for start, stop in zip(bounds[:-1], bounds[1:], strict=True)
+            for start, stop in itertools.pairwise(bounds)
         ]
         for job in jobs:
             job.result()

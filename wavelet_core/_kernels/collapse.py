@@ -114,10 +114,7 @@ def is_legal(
     for k in range(size):  # link condition
         if k == position:
             continue
-        if is_outline:
-            is_next = abs(k - position) == 1
-        else:
-            is_next = k == after or k == before
+        is_next = abs(k - position) == 1 if is_outline else k in (after, before)
         if not is_next and are_joined(
             target, ring[base + k], faces, indptr, star, made_head, made_next, made_end
         ):

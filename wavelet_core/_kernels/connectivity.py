@@ -11,7 +11,7 @@ PINCH = 2
 ISOLATED = 3
 
 
-# faces (n_faces, 3) int32; indptr (n_vertices + 1,) int64, filled; star (3 * n_faces,) int32, filled
+# faces (n_faces, 3) int32; indptr (n_vertices + 1,) int64 and star (3 n_faces,) int32, filled
 @njit
 def fill_stars(faces, indptr, star):
     for face in range(faces.shape[0]):
@@ -28,7 +28,7 @@ def fill_stars(faces, indptr, star):
 
 
 # The ring of v is written at indptr[v] + v and has room for one more entry than v has faces.
-# kind (n,) int8, ring (3 n_faces + n,) int32, ring_size (n,) int32, bad_neighbour (n,) int32: filled
+# kind (n,) int8; ring (3 n_faces + n,), ring_size (n,), bad_neighbour (n,) int32: all filled
 @njit
 def order_rings(start, stop, faces, indptr, star, kind, ring, ring_size, bad_neighbour):
     for vertex in range(start, stop):

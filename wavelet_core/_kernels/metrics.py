@@ -45,8 +45,8 @@ def errors_under_faces(
             continue
         margin = EDGE_TOLERANCE * (abs(bx) + abs(by) + abs(cx) + abs(cy))
         low, high = ay + min(0.0, by, cy) - margin, ay + max(0.0, by, cy) + margin
-        first_row = max(int(math.floor((low - y0) / size)), 0)
-        last_row = min(int(math.floor((high - y0) / size)), n_rows - 1)
+        first_row = max(math.floor((low - y0) / size), 0)
+        last_row = min(math.floor((high - y0) / size), n_rows - 1)
         for row in range(first_row, last_row + 1):
             bottom, top = y0 + row * size - margin, y0 + (row + 1) * size + margin
             left, right = np.inf, -np.inf
@@ -68,8 +68,8 @@ def errors_under_faces(
                 left, right = min(left, x1, x2), max(right, x1, x2)
             if left > right:
                 continue
-            first = max(int(math.floor((left - margin - x0) / size)), 0)
-            last = min(int(math.floor((right + margin - x0) / size)), n_columns - 1)
+            first = max(math.floor((left - margin - x0) / size), 0)
+            last = min(math.floor((right + margin - x0) / size), n_columns - 1)
             for k in range(
                 cell_indptr[row * n_columns + min(first, n_columns)],
                 cell_indptr[row * n_columns + max(last + 1, min(first, n_columns))],
