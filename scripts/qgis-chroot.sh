@@ -57,7 +57,7 @@ inside() {
         mkdir -p "$ROOT$REPOSITORY"
         mount --bind "$REPOSITORY" "$ROOT$REPOSITORY"
         if [ -n "$DATA" ]; then mkdir -p "$ROOT$DATA"; mount --bind -o ro "$DATA" "$ROOT$DATA"; fi
-        exec chroot "$ROOT" /bin/sh -euc "cd \"$REPOSITORY\"; $1"
+        exec chroot "$ROOT" /bin/bash -euc "cd \"$REPOSITORY\"; $1"
     ' sh "$1"
 }
 
