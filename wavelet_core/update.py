@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array, diags  # diags_array is not in SciPy 1.10
 
 from ._kernels.update import add_ring_means, subtract_ring_means
 from ._validate import FloatArray
@@ -65,7 +65,7 @@ def update_filter(
     if method == "martinez_ortega":
         sums = prediction.sum(axis=0)
         scale = np.divide(0.5, sums, out=np.zeros(n_even), where=(sums != 0) & ~locked)
-        return csr_array(diags_array(scale) @ prediction.T)
+        return csr_array(diags(scale) @ prediction.T)
     if method == "one_ring_mean":
         n_free = np.bincount(rows[is_free], minlength=n_odd)
         values = is_free / (n_free[rows] + 1.0)
