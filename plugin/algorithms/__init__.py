@@ -1,0 +1,1 @@
+"""The Processing algorithms, one a module. Their ids, parameters and outputs are public and never renamed."""

@@ -1,0 +1,132 @@
+"""What all algorithms share: help text, dependency check, and errors turned into QGIS's at one place."""
+
+from __future__ import annotations
+
+import html
+
+from qgis.core import (
+    QgsProcessingAlgorithm,
+    QgsProcessingException,
+    QgsProcessingParameterDefinition,
+)
+from qgis.PyQt.QtGui import QIcon
+
+from . import dependencies
+from .packages import install_finder
+from .translation import tr
+
+ADVANCED = QgsProcessingParameterDefinition.Flag.FlagAdvanced
+
+
+class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
+    """Base of every algorithm.
+
+    A subclass gives ``name`` (public, never changed), ``displayName``, ``GROUP``, ``tags``,
+    ``about``, ``initAlgorithm`` and ``run``; the rest is here.
+    """
+
+    #: Id and translatable name of the group in the toolbox; see ``groups.py``.
+    GROUP = None
+    #: Packages needed beyond numpy and scipy, as ``dependencies.Package``.
+    PACKAGES = ()
+
+    def tr(self, text):
+        """Return ``text`` in the user's language."""
+        return tr(text)
+
+    def createInstance(self):
+        """Return a new algorithm of the same kind."""
+        return type(self)()
+
+    def groupId(self):
+        """Return the id of the group in the toolbox."""
+        return self.GROUP
+
+    def group(self):
+        """Return the name of the group in the toolbox."""
+        return {
+            "analysis": self.tr("Analysis"),
+            "reconstruction": self.tr("Reconstruction"),
+            "details": self.tr("Details"),
+            "quality": self.tr("Quality"),
+        }[self.GROUP]
+
+    def icon(self):
+        """Return the provider's icon."""
+        from .provider import ICON
+
+        return QIcon(ICON)
+
+    def svgIconPath(self):
+        """Return the file of the provider's icon."""
+        from .provider import ICON
+
+        return ICON
+
+    def about(self):
+        """Return what the algorithm does, in a few sentences of HTML."""
+        raise AssertionError(f"{self.name()} says nothing about itself")
+
+    def shortHelpString(self):
+        """Return the help: what the algorithm does, then what each parameter and output is."""
+        lines = [f"<p>{self.about()}</p>"]
+        helped = [p for p in self.parameterDefinitions() if p.help()]
+        if helped:
+            lines.append(f"<h3>{self.tr('Parameters')}</h3>")
+        lines += [f"<p><b>{html.escape(p.description())}</b><br>{p.help()}</p>" for p in helped]
+        numbers = [o for o in self.outputDefinitions() if o.type() in ("outputNumber", "outputString")]
+        if numbers:
+            lines.append(f"<h3>{self.tr('Also returned')}</h3><ul>")
+            lines += [f"<li>{html.escape(o.description())} ({o.name()})</li>" for o in numbers]
+            lines.append("</ul>")
+        return "\n".join(lines)
+
+    def add(self, parameter, help_text, advanced=False):
+        """Declare ``parameter`` with its help; ``advanced`` ones are folded away in the dialog."""
+        parameter.setHelp(help_text)
+        if advanced:
+            parameter.setFlags(parameter.flags() | ADVANCED)
+        self.addParameter(parameter)
+
+    def canExecute(self):
+        """Return True always: what is missing is told when the algorithm is run, with the remedy."""
+        return True, ""
+
+    def packages(self, parameters, context):
+        """Return what these parameters need beyond numpy and scipy."""
+        return self.PACKAGES
+
+    def processAlgorithm(self, parameters, context, feedback):
+        """Run, with every error of ours as a message in the log rather than a traceback."""
+        refusal = dependencies.refusal(self.packages(parameters, context))
+        if refusal:
+            raise QgsProcessingException(refusal)
+        slow = dependencies.slow_without_numba()
+        if slow:
+            feedback.pushWarning(slow)
+        install_finder()
+        from wavelet_core.errors import Cancelled, WaveletError
+
+        try:
+            return self.run(parameters, context, feedback)
+        except Cancelled:
+            feedback.pushInfo(self.tr("Cancelled; nothing was written."))
+            return {}
+        except WaveletError as error:
+            raise QgsProcessingException(_sentence(error)) from error
+        except MemoryError as error:
+            raise QgsProcessingException(
+                self.tr(
+                    "There is not enough memory for this input (some 700 bytes a vertex are "
+                    "needed). Cut it, or take a coarser one."
+                )
+            ) from error
+
+    def run(self, parameters, context, feedback):
+        """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""
+        raise AssertionError(f"{self.name()} does nothing")
+
+
+def _sentence(error):
+    text = str(error)
+    return text[:1].upper() + text[1:]

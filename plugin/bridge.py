@@ -1,0 +1,81 @@
+"""Feedback to progress, and a QGIS CRS to the numbers that ``wavelet_gis`` works with."""
+
+from __future__ import annotations
+
+from osgeo import osr
+from qgis.core import QgsCoordinateReferenceSystem
+
+from .gdal_errors import without_exceptions
+
+
+def progress(feedback, start: float = 0.0, stop: float = 1.0):
+    """Return a progress function for the core that drives a part of QGIS's bar.
+
+    Parameters
+    ----------
+    feedback : QgsProcessingFeedback
+        Shows the progress and holds the cancel button.
+    start, stop : float
+        The part of the whole work that this step is.
+
+    Returns
+    -------
+    callable
+        Takes a fraction in [0, 1]; returns False once the user has cancelled.
+    """
+
+    def report(fraction: float) -> bool:
+        feedback.setProgress(100.0 * (start + (stop - start) * fraction))
+        return not feedback.isCanceled()
+
+    return report
+
+
+def require_running(feedback) -> None:
+    """Stop here if the user has cancelled.
+
+    Raises
+    ------
+    Cancelled
+    """
+    from wavelet_core.errors import Cancelled
+
+    if feedback.isCanceled():
+        raise Cancelled("cancelled by the user")
+
+
+def coordinate_system(crs: QgsCoordinateReferenceSystem):
+    """Return the ``wavelet_gis.crs.CoordinateSystem`` of a QGIS CRS; an invalid one is no CRS."""
+    from wavelet_gis.crs import CoordinateSystem
+
+    if not crs.isValid():
+        return CoordinateSystem()
+    wkt = crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL)
+    with without_exceptions(osr):
+        system = osr.SpatialReference()
+        system.ImportFromWkt(wkt)
+        kind, unit = "unknown", 1.0
+        if system.IsGeographic():
+            kind, unit = "geographic", system.GetAngularUnits()
+        elif system.IsProjected():
+            kind, unit = "projected", system.GetLinearUnits()
+        vertical_unit = _known_unit(system.GetAttrValue("VERT_CS|UNIT"))
+    return CoordinateSystem(
+        wkt=wkt,
+        name=crs.description() or crs.authid(),
+        kind=kind,
+        horizontal_unit=unit,
+        vertical_unit=vertical_unit,
+        semi_major=system.GetSemiMajor(),
+        inverse_flattening=system.GetInvFlattening(),
+    )
+
+
+def _known_unit(name: str | None) -> str | None:
+    from wavelet_gis.crs import vertical_unit_name
+    from wavelet_gis.errors import CrsError
+
+    try:
+        return vertical_unit_name(name) if name else None
+    except CrsError:
+        return None

@@ -1,0 +1,110 @@
+"""Which packages are missing, and how to get them on this machine. Nothing is installed from here."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from .translation import tr
+
+#: The oldest Python that the algorithms run under.
+MINIMUM_PYTHON = (3, 11)
+
+
+@dataclass(frozen=True)
+class Package:
+    """A Python package by its import name, its name for pip, and its Debian package if there is one."""
+
+    module: str
+    pip: str
+    debian: str | None = None
+
+
+NUMPY = Package("numpy", "numpy", "python3-numpy")
+SCIPY = Package("scipy", "scipy", "python3-scipy")
+NUMBA = Package("numba", "numba", "python3-numba")
+LASPY = Package("laspy", "laspy[lazrs]")
+LAZRS = Package("lazrs", "lazrs")
+PYTHONCDT = Package("pythoncdt", "PythonCDT")
+SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
+
+#: What every algorithm needs.
+ALWAYS = (NUMPY, SCIPY)
+
+
+def missing(packages) -> list[Package]:
+    """Return those of ``packages`` that cannot be found, without importing them."""
+    return [package for package in packages if importlib.util.find_spec(package.module) is None]
+
+
+def remedy(packages) -> str:
+    """Return the exact command that installs ``packages`` for the Python that QGIS runs here."""
+    names = " ".join(package.pip for package in packages)
+    if Path("/.flatpak-info").exists():
+        return tr("in a terminal: {}").format(
+            f"flatpak run --command=pip3 org.qgis.qgis install --user {names}"
+        )
+    if sys.platform == "win32":
+        return tr("in the OSGeo4W Shell (Start menu, QGIS): {}").format(
+            f"python -m pip install {names}"
+        )
+    if sys.platform == "darwin":
+        interpreter = Path(sys.prefix) / "bin" / "python3"
+        return tr("in Terminal: {}").format(f'"{interpreter}" -m pip install --user {names}')
+    return tr("in a terminal: {}").format(_linux_command(packages))
+
+
+def _linux_command(packages) -> str:
+    commands = []
+    from_debian = [p.debian for p in packages if p.debian] if _is_debian() else []
+    from_pip = [p.pip for p in packages if not (p.debian and from_debian)]
+    if from_debian:
+        commands.append("sudo apt install " + " ".join(from_debian))
+    if from_pip:
+        # Debian 12 and later, Fedora and others refuse pip into the system's Python without this.
+        marker = Path(importlib.util.__file__).parent.parent / "EXTERNALLY-MANAGED"
+        allow = "--break-system-packages " if marker.exists() else ""
+        commands.append(f"/usr/bin/python3 -m pip install --user {allow}" + " ".join(from_pip))
+    return " && ".join(commands)
+
+
+def _is_debian() -> bool:
+    return Path("/etc/debian_version").exists()
+
+
+def refusal(packages=()) -> str | None:
+    """Return why nothing can run here, with the remedy, or None when all is there.
+
+    Parameters
+    ----------
+    packages : sequence of Package
+        What is needed beyond numpy and scipy.
+    """
+    if sys.version_info < MINIMUM_PYTHON:
+        return tr(
+            "Terrain Wavelets needs Python {} or later, and this QGIS runs Python {}; "
+            "install a newer QGIS."
+        ).format(_dotted(MINIMUM_PYTHON), _dotted(sys.version_info[:2]))
+    absent = missing((*ALWAYS, *packages))
+    if not absent:
+        return None
+    names = ", ".join(package.module for package in absent)
+    return tr("missing Python package: {names}. Install it {remedy} and start QGIS again.").format(
+        names=names, remedy=remedy(absent)
+    )
+
+
+def slow_without_numba() -> str | None:
+    """Return what to tell a user whose Python has no numba, or None when it is there."""
+    if not missing([NUMBA]):
+        return None
+    return tr(
+        "The Python package numba is missing: the work runs some hundred times slower and large "
+        "inputs are refused. Install it {} and start QGIS again."
+    ).format(remedy([NUMBA]))
+
+
+def _dotted(version) -> str:
+    return ".".join(str(part) for part in version)

@@ -1,0 +1,52 @@
+"""What QGIS loads and unloads: the provider and the translation."""
+
+from __future__ import annotations
+
+from qgis.core import QgsApplication, QgsSettings
+from qgis.PyQt.QtCore import QCoreApplication, QLocale, QTranslator
+
+from .packages import PLUGIN_FOLDER, install_finder, remove_finder
+from .provider import TerrainWaveletsProvider
+
+
+class TerrainWaveletsPlugin:
+    """Adds the provider ``terrainwavelets`` to Processing; there is no other user interface."""
+
+    def __init__(self, iface):
+        self.iface = iface
+        self.provider = None
+        self.translator = None
+
+    def initProcessing(self):
+        """Register the provider; ``qgis_process`` calls this alone."""
+        install_finder()
+        self.translator = _installed_translator()
+        self.provider = TerrainWaveletsProvider()
+        QgsApplication.processingRegistry().addProvider(self.provider)
+
+    def initGui(self):
+        """Register the provider in QGIS with a window."""
+        self.initProcessing()
+
+    def unload(self):
+        """Take the provider, the translation and the import finder away again."""
+        if self.provider is not None:
+            QgsApplication.processingRegistry().removeProvider(self.provider)
+            self.provider = None
+        if self.translator is not None:
+            QCoreApplication.removeTranslator(self.translator)
+            self.translator = None
+        remove_finder()
+
+
+def _installed_translator() -> QTranslator | None:
+    """Return the translator for the user's language where one is shipped, installed, else None."""
+    locale = QgsSettings().value("locale/userLocale", QLocale.system().name())
+    path = PLUGIN_FOLDER / "plugin" / "i18n" / f"terrain_wavelets_{str(locale)[:2]}.qm"
+    if not path.is_file():
+        return None
+    translator = QTranslator()
+    if not translator.load(str(path)):
+        return None
+    QCoreApplication.installTranslator(translator)
+    return translator

@@ -1,0 +1,49 @@
+"""The Processing provider ``terrainwavelets``: its algorithms and its models."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.core import QgsProcessingModelAlgorithm, QgsProcessingProvider
+from qgis.PyQt.QtGui import QIcon
+
+from .algorithms import ALGORITHMS
+from .packages import PLUGIN_FOLDER
+from .translation import tr
+
+ICON = str(Path(__file__).resolve().parent / "icons" / "terrain_wavelets.svg")
+MODELS = PLUGIN_FOLDER / "processing_models"
+
+
+class TerrainWaveletsProvider(QgsProcessingProvider):
+    """Lists every algorithm and model, whatever packages are missing; running one says which."""
+
+    def id(self):
+        """Return the provider's id, part of every algorithm's public name."""
+        return "terrainwavelets"
+
+    def name(self):
+        """Return the name in the toolbox."""
+        return "Terrain Wavelets"
+
+    def longName(self):
+        """Return the name with what it is for."""
+        return tr("Terrain Wavelets: reversible multiresolution TINs")
+
+    def icon(self):
+        """Return the icon in the toolbox."""
+        return QIcon(ICON)
+
+    def svgIconPath(self):
+        """Return the icon's file, which Processing renders at any size."""
+        return ICON
+
+    def loadAlgorithms(self):
+        """Add every algorithm, then every model."""
+        for algorithm in ALGORITHMS:
+            self.addAlgorithm(algorithm())
+        for path in sorted(MODELS.glob("*.model3")):
+            model = QgsProcessingModelAlgorithm()
+            if model.fromFile(str(path)):
+                model.setSourceFilePath(str(path))
+                self.addAlgorithm(model)
