@@ -216,7 +216,7 @@ def barycentric_weights(
     plan: np.ndarray, faces: list[Face], odd: int, target: int
 ) -> dict[int, float]:
     """Return the coordinates of ``odd`` in the face that covers it after its collapse."""
-    new = [f for f in collapse(star(faces, odd), odd, target)]
+    new = collapse(star(faces, odd), odd, target)
     best: dict[int, float] = {}
     best_least = -math.inf
     for face in new:
