@@ -159,16 +159,26 @@ class Pyramid:
     def detail(self, level: int) -> Detail:
         """Return the detail layer of the step from ``level + 1`` to ``level``."""
         self._require_step(level)
-        step = self.steps[level]
+        return next(detail for k, detail in self.details() if k == level)
+
+    def details(self) -> Iterator[tuple[int, Detail]]:
+        """Yield ``(level, detail layer)`` from level 0 up, in one synthesis pass."""
         ids = self._ids_by_level(0)
-        positions = next(c for k, c in self._coefficients(ids) if k == level + 1)
-        vertex_ids = ids[level + 1][step.odd].astype(np.int64)
+        for finer, coefficients in self._coefficients(ids):
+            if finer > 0:
+                step = self.steps[finer - 1]
+                yield finer - 1, self._detail_layer(step, ids[finer], coefficients)
+
+    def _detail_layer(self, step: Step, ids: NDArray[np.int32], coefficients: FloatArray) -> Detail:
+        vertex_ids = ids[step.odd].astype(np.int64)
         if self.horizontal is None:
-            xyz = positions[step.odd, :3]
+            positions = coefficients[step.odd, :3]
         else:
-            xyz = np.column_stack([self.horizontal[vertex_ids], positions[step.odd, 0]])
+            positions = np.column_stack([self.horizontal[vertex_ids], coefficients[step.odd, 0]])
         magnitude = np.linalg.norm(step.details, axis=1)
-        return Detail(frozen(vertex_ids), frozen(xyz), frozen(step.details), frozen(magnitude))
+        return Detail(
+            frozen(vertex_ids), frozen(positions), frozen(step.details), frozen(magnitude)
+        )
 
     def filters(self, level: int) -> FilterPair:
         """Return the prediction and update filters of the step from ``level + 1`` to ``level``."""
