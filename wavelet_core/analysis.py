@@ -16,7 +16,13 @@ from .lifting import Step, analyse_level
 from .mesh import TriangleMesh
 from .metrics import surface_errors
 from .options import AnalysisOptions, resolve_options
-from .partition import ColouringPartition, LevelView, Partition, QuadricPartition
+from .partition import (
+    ColouringPartition,
+    LevelView,
+    Partition,
+    QuadricPartition,
+    RandomPartition,
+)
 from .prediction import Removal, predict
 from .pyramid import Pyramid
 
@@ -41,6 +47,7 @@ def analyse(
     *,
     attribute_weights: Sequence[float] | None = None,
     bending_weight: float = 1.0,
+    seed: int = 0,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
 
@@ -50,11 +57,13 @@ def analyse(
         A manifold surface, with or without outline and holes.
     levels : int, optional
         The most levels to build. By default 12, or, with another stop rule, as many as it takes.
-    partition : {"quadric", "colouring"}
-        Which vertices go: by the paper's cost, or regardless of it.
-    prediction : {"uniform", "cotangent", "geometric", "nnls", "least_squares", "barycentric"}
-        How an odd vertex is estimated from its neighbours; the paper's short names (``"GL"``)
-        and joined designs (``"GLMN"``) are accepted.
+    partition : {"quadric", "colouring", "random"}
+        Which vertices go: by the paper's cost, or regardless of it in the order of their index
+        or in a random one.
+    prediction : str
+        How an odd vertex is estimated from its neighbours: ``"uniform"``, ``"cotangent"``,
+        ``"geometric"``, ``"nnls"``, ``"least_squares"``, ``"barycentric"`` or ``"plane"``. The
+        paper's short names (``"GL"``) and joined designs (``"GLMN"``) are accepted.
     update : {"minimum_norm", "martinez_ortega", "one_ring_mean", "none"}
         How the details are handed on to the even vertices.
     signal : {"z", "xyz"}
@@ -73,6 +82,8 @@ def analyse(
         Weight of each attribute, against the coordinates, in cost and prediction; 1 by default.
     bending_weight : float
         Weight of the bending energy in the cost of ``partition="quadric"``.
+    seed : int
+        Of the order of ``partition="random"``.
 
     Returns
     -------
@@ -113,6 +124,7 @@ def analyse(
         max_rms=max_rms,
         attribute_weights=attribute_weights,
         bending_weight=bending_weight,
+        seed=seed,
     )
     announce_fallback(mesh.n_vertices)
     return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
@@ -142,11 +154,7 @@ class _Analysis:
         self._locked = locked
         self._integrals = np.ones(mesh.n_vertices)
         self._scale = _Normalisation(mesh, options)
-        self._partition: Partition = (
-            QuadricPartition(options.bending_weight)
-            if options.partition == "quadric"
-            else ColouringPartition()
-        )
+        self._partition = _partition(options)
 
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
@@ -245,6 +253,15 @@ class _Analysis:
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
         if self._progress(fraction) is False:
             raise Cancelled("the analysis was cancelled; nothing was kept.")
+
+
+def _partition(options: AnalysisOptions) -> Partition:
+    """Return the partition that the options name."""
+    if options.partition == "quadric":
+        return QuadricPartition(options.bending_weight)
+    if options.partition == "random":
+        return RandomPartition(options.seed)
+    return ColouringPartition()
 
 
 class _Normalisation:

@@ -12,7 +12,7 @@ from .errors import OptionError
 from .prediction import PREDICTIONS
 from .update import UPDATES
 
-PARTITIONS = ("quadric", "colouring")
+PARTITIONS = ("quadric", "colouring", "random")
 SIGNALS = ("z", "xyz")
 #: Levels when neither a number nor a stop rule is given: the paper's experiments use 12.
 DEFAULT_LEVELS = 12
@@ -34,6 +34,7 @@ class AnalysisOptions:
     max_rms: float | None
     attribute_weights: tuple[float, ...]
     bending_weight: float
+    seed: int
 
     def as_dict(self) -> dict[str, Any]:
         """Return the options as plain numbers, strings and lists."""
@@ -73,6 +74,7 @@ def resolve_options(
     max_rms: float | None,
     attribute_weights: Sequence[float] | None,
     bending_weight: float,
+    seed: int,
 ) -> AnalysisOptions:
     """Return the options with defaults filled in and short names spelled out.
 
@@ -98,6 +100,8 @@ def resolve_options(
         )
     if not (np.isfinite(bending_weight) and bending_weight >= 0):
         raise OptionError(f"bending_weight is {bending_weight}; give 0 or more.")
+    if not 0 <= seed < 2**63:
+        raise OptionError(f"seed is {seed}; give a whole number of 0 or more.")
     prediction, update = parse_design(prediction, update)
     return AnalysisOptions(
         levels=int(levels),
@@ -110,6 +114,7 @@ def resolve_options(
         max_rms=None if max_rms is None else float(max_rms),
         attribute_weights=tuple(float(w) for w in weights),
         bending_weight=float(bending_weight),
+        seed=int(seed),
     )
 
 

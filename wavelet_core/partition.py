@@ -111,6 +111,32 @@ class ColouringPartition:
         """Carry nothing."""
 
 
+class RandomPartition:
+    """A maximal independent set in random order: another one for every seed and level.
+
+    Averaging over such pyramids is to meshes what cycle spinning is to images. With signal "z"
+    it looks at x and y alone, so that the filters owe nothing to the noise in z; the hole is
+    closed by the shortest legal collapse.
+
+    Parameters
+    ----------
+    seed : int
+        Of the order.
+    """
+
+    def __init__(self, seed: int = 0) -> None:
+        self._generator = np.random.default_rng(seed)
+
+    def split(self, view: LevelView, max_odd: int) -> Split:
+        """Label the vertices of a level in random order."""
+        order = self._generator.permutation(len(view.points))
+        points = view.plan if view.in_plan else view.points
+        return _label(view, order, points, np.empty((0, 0)), max_odd)
+
+    def descend(self, split: Split, even: NDArray[np.int32], prediction: csr_array) -> None:
+        """Carry nothing."""
+
+
 def _label(
     view: LevelView,
     order: NDArray[np.int64],

@@ -15,6 +15,7 @@ from ._kernels.prediction import (
     geometric_weights,
     least_squares_weights,
     nnls_weights,
+    plane_weights,
     ring_columns,
 )
 from ._validate import FloatArray
@@ -28,6 +29,7 @@ PREDICTIONS = {
     "NNLS": "nnls",
     "LS": "least_squares",
     "BL": "barycentric",
+    "PL": "plane",
 }
 
 
@@ -86,6 +88,11 @@ def predict(method: str, removal: Removal) -> csr_array:
       coarse face that now covers it, so that the detail is its vertical distance from the
       coarse surface. The row also names the rest of the ring where all three corners are
       locked, with weight 0, so that the update has somewhere to go.
+    - ``plane`` (PL; beyond the paper): the value, at the vertex, of the plane fitted to its ring
+      by least squares in plan. Any tilted plane has zero details (two vanishing moments), and of
+      all weights that do so these have the least norm. A vertex lies within the hull of its
+      upright ring, where convex weights do it too, so the squared norm is at most 1 and noise is
+      never amplified. *Our choice:* even weights where signal "xyz" has folded the ring.
     """
     if method == "barycentric":
         return _barycentric(removal)
@@ -103,6 +110,8 @@ def predict(method: str, removal: Removal) -> csr_array:
     elif method == "cotangent":
         arguments += (connectivity.kind, removal.points, weights)
         run_in_ranges(cotangent_weights, len(odd), *arguments)
+    elif method == "plane":
+        run_in_ranges(plane_weights, len(odd), *arguments, removal.plan, weights)
     else:
         kernel = {
             "geometric": geometric_weights,

@@ -20,6 +20,10 @@ NNLS_DAMPING = 1e-8
 LEAST_SQUARES_DAMPING = 1e-10
 # dual values below this count as met in the non-negative least squares
 NNLS_TOLERANCE = 1e-11
+# a ring flatter than this in plan determines no plane (relative to its squared size)
+LEAST_PLANE_DETERMINANT = 1e-12
+# a vertex inside its ring has weights of squared norm 1 at most; more means it lies outside
+LARGEST_PLANE_NORM = 1.0 + 1e-6
 
 
 # even_position (n,) int32; columns (nnz,) int32, filled
@@ -214,6 +218,41 @@ def least_squares_weights(start, stop, odd, row_indptr, indptr, ring, points, we
             total += solution[k]
         for k in range(size):
             weights[first + k] = solution[k] / total
+
+
+# plan (n, 2) float64. The weights of least norm that give back every plane; even ones where the
+# ring is a line in plan, or does not lie round v (signal "xyz" only)
+@njit
+def plane_weights(start, stop, odd, row_indptr, indptr, ring, plan, weights):
+    for row in range(start, stop):
+        v = odd[row]
+        base, first = indptr[v] + v, row_indptr[row]
+        size = row_indptr[row + 1] - first
+        mean_x, mean_y = 0.0, 0.0
+        for k in range(size):
+            mean_x += (plan[ring[base + k], 0] - plan[v, 0]) / size
+            mean_y += (plan[ring[base + k], 1] - plan[v, 1]) / size
+        xx, xy, yy = 0.0, 0.0, 0.0
+        for k in range(size):
+            x = plan[ring[base + k], 0] - plan[v, 0] - mean_x
+            y = plan[ring[base + k], 1] - plan[v, 1] - mean_y
+            xx += x * x
+            xy += x * y
+            yy += y * y
+        determinant = xx * yy - xy * xy
+        is_sound = determinant > LEAST_PLANE_DETERMINANT * (xx + yy) ** 2
+        norm = 0.0
+        if is_sound:
+            slope_x = (yy * mean_x - xy * mean_y) / determinant
+            slope_y = (xx * mean_y - xy * mean_x) / determinant
+            for k in range(size):
+                x = plan[ring[base + k], 0] - plan[v, 0] - mean_x
+                y = plan[ring[base + k], 1] - plan[v, 1] - mean_y
+                weights[first + k] = 1.0 / size - slope_x * x - slope_y * y
+                norm += weights[first + k] ** 2
+        if not is_sound or norm > LARGEST_PLANE_NORM:
+            for k in range(first, first + size):
+                weights[k] = 1.0 / size
 
 
 # target (n_odd,) int32; plan (n, 2) float64; corners (n_odd, 3) int32 and weights (n_odd, 3)
