@@ -14,6 +14,7 @@ from qgis.PyQt.QtGui import QIcon
 from . import dependencies
 from .packages import install_finder
 from .translation import tr
+from .warning_log import shown_in
 
 ADVANCED = QgsProcessingParameterDefinition.Flag.FlagAdvanced
 
@@ -108,7 +109,8 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         from wavelet_core.errors import Cancelled, WaveletError
 
         try:
-            return self.run(parameters, context, feedback)
+            with shown_in(feedback):
+                return self.run(parameters, context, feedback)
         except Cancelled:
             feedback.pushInfo(self.tr("Cancelled; nothing was written."))
             return {}

@@ -7,6 +7,7 @@ from qgis.PyQt.QtCore import QCoreApplication, QLocale, QTranslator
 
 from .packages import PLUGIN_FOLDER, install_finder, remove_finder
 from .provider import TerrainWaveletsProvider
+from .warning_log import uninstall
 
 
 class TerrainWaveletsPlugin:
@@ -36,6 +37,7 @@ class TerrainWaveletsPlugin:
         if self.translator is not None:
             QCoreApplication.removeTranslator(self.translator)
             self.translator = None
+        uninstall()
         remove_finder()
 
 

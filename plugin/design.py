@@ -1,0 +1,116 @@
+"""The parameters by which every analysis is steered, the same in each algorithm that has them."""
+
+from __future__ import annotations
+
+from qgis.core import (
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterNumber,
+)
+
+from .translation import tr
+
+# Kept here, and not asked of wavelet_core, so that the toolbox lists them where SciPy is missing;
+# a test compares them with the core's.
+PARTITIONS = ("quadric", "colouring")
+PREDICTIONS = ("geometric", "uniform", "cotangent", "nnls", "least_squares", "barycentric")
+UPDATES = ("minimum_norm", "martinez_ortega", "one_ring_mean", "none")
+SIGNALS = ("z", "xyz")
+VERTICAL_UNITS = ("from the CRS", "metre", "foot", "us_survey_foot")
+
+INTEGER = QgsProcessingParameterNumber.Type.Integer
+DOUBLE = QgsProcessingParameterNumber.Type.Double
+
+
+def choice(name, description, values, default=None):
+    """Return an enum parameter whose values are stored as words, so that lists may grow."""
+    return QgsProcessingParameterEnum(
+        name,
+        description,
+        options=list(values),
+        defaultValue=values[0] if default is None else default,
+        usesStaticStrings=True,
+    )
+
+
+def add_design_parameters(algorithm) -> None:
+    """Declare LEVELS, PARTITION, PREDICTION, UPDATE, SIGNAL, BENDING_WEIGHT and VERTICAL_UNIT."""
+    algorithm.add(
+        QgsProcessingParameterNumber(
+            "LEVELS", tr("Most levels"), INTEGER, 12, optional=False, minValue=1, maxValue=1000
+        ),
+        tr(
+            "How many steps of analysis at most (the paper's L). Each removes about a quarter of "
+            "the vertices, so 12 levels leave some 2 %. Fewer come out where nothing more can go."
+        ),
+    )
+    algorithm.add(
+        choice("PARTITION", tr("Partition"), PARTITIONS),
+        tr(
+            "Which vertices go at a level (the paper's odd vertices). <i>quadric</i>: those of "
+            "least cost by generalised quadric and bending energy, as in the paper; "
+            "<i>colouring</i>: regardless of shape, the paper's baseline."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
+        choice("PREDICTION", tr("Prediction filter"), PREDICTIONS),
+        tr(
+            "How a removed vertex is estimated from its neighbours; what is left over is its "
+            "detail. In the paper: <i>geometric</i> GL, <i>uniform</i> UG, <i>cotangent</i> CL, "
+            "<i>nnls</i> NNLS (non-negative least squares), <i>least_squares</i> LS (can be "
+            "unstable); <i>barycentric</i>: from the coarse triangle that now covers it."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
+        choice("UPDATE", tr("Update filter"), UPDATES),
+        tr(
+            "How details are handed on to the vertices that stay. In the paper: "
+            "<i>minimum_norm</i> MN (keeps the weighted mean height at every level), "
+            "<i>martinez_ortega</i> MO, <i>one_ring_mean</i> ORMP; <i>none</i> keeps heights as "
+            "they are (subsampling)."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
+        choice("SIGNAL", tr("Lifted coordinates"), SIGNALS),
+        tr(
+            "<i>z</i>: elevation and attributes, so that x and y stay and every level is a valid "
+            "TIN; <i>xyz</i>: all coordinates, as in the paper, where some triangles of a coarse "
+            "level may be flipped in plan."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
+        QgsProcessingParameterNumber(
+            "BENDING_WEIGHT", tr("Weight of bending energy"), DOUBLE, 1.0, minValue=0.0
+        ),
+        tr("Weight of curvature in the cost of the <i>quadric</i> partition; no unit."),
+        advanced=True,
+    )
+    algorithm.add(
+        choice("VERTICAL_UNIT", tr("Unit of elevation"), VERTICAL_UNITS),
+        tr(
+            "By default the unit that the CRS states; where it states none, metres for a "
+            "geographic CRS and the unit of x and y for any other. Results keep the input's unit."
+        ),
+        advanced=True,
+    )
+
+
+def vertical_unit(algorithm, parameters, context):
+    """Return the chosen vertical unit, or None for the CRS's."""
+    unit = algorithm.parameterAsString(parameters, "VERTICAL_UNIT", context)
+    return None if unit in ("", VERTICAL_UNITS[0]) else unit
+
+
+def design_options(algorithm, parameters, context) -> dict:
+    """Return the options of ``wavelet_core.analyse`` that the parameters say."""
+    return {
+        "levels": algorithm.parameterAsInt(parameters, "LEVELS", context),
+        "partition": algorithm.parameterAsString(parameters, "PARTITION", context),
+        "prediction": algorithm.parameterAsString(parameters, "PREDICTION", context),
+        "update": algorithm.parameterAsString(parameters, "UPDATE", context),
+        "signal": algorithm.parameterAsString(parameters, "SIGNAL", context),
+        "bending_weight": algorithm.parameterAsDouble(parameters, "BENDING_WEIGHT", context),
+    }

@@ -1,0 +1,216 @@
+"""Vector features to arrays and back, through QGIS sources and sinks."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from qgis.core import (
+    QgsFeature,
+    QgsFeatureSink,
+    QgsGeometry,
+    QgsProcessingException,
+    QgsWkbTypes,
+)
+
+from .translation import tr
+
+#: Features read or written between two looks at the cancel button.
+CHUNK = 5_000
+
+_POINT_Z = np.dtype([("order", "u1"), ("type", "<u4"), ("xyz", "<f8", 3)])
+_TRIANGLE_Z = np.dtype(
+    [("order", "u1"), ("type", "<u4"), ("rings", "<u4"), ("corners", "<u4"), ("xyz", "<f8", (4, 3))]
+)
+
+
+class Points(NamedTuple):
+    """Points of a layer: xyz (n, 3), attributes (n, k), is_marked (n,) bool."""
+
+    xyz: np.ndarray
+    attributes: np.ndarray
+    is_marked: np.ndarray
+
+
+def read_points(source, z_field, attribute_fields, mark_field, feedback) -> Points:
+    """Return the points of a source.
+
+    Parameters
+    ----------
+    source : QgsProcessingFeatureSource
+        Its selection or subset is respected.
+    z_field : str or None
+        Field with the elevation; None takes the geometry's Z.
+    attribute_fields : sequence of str
+        Numeric fields that become attributes.
+    mark_field : str or None
+        Field that marks a point (any value but 0, false and NULL).
+
+    Raises
+    ------
+    QgsProcessingException
+        A point without elevation, an attribute that is NULL or no number.
+    """
+    fields = source.fields()
+    z_index = fields.lookupField(z_field) if z_field else -1
+    attribute_indices = [fields.lookupField(name) for name in attribute_fields]
+    mark_index = fields.lookupField(mark_field) if mark_field else -1
+    if not z_field and not QgsWkbTypes.hasZ(source.wkbType()):
+        raise QgsProcessingException(
+            tr("{}: the points have no Z; choose the field with the elevation.").format(
+                source.sourceName()
+            )
+        )
+    xyz, attributes, marks = [], [], []
+    for feature in _features(source, feedback):
+        geometry = feature.geometry()
+        values = feature.attributes()
+        row = [_number(feature, values[k], fields[k].name()) for k in attribute_indices]
+        is_marked = mark_index >= 0 and _is_true(values[mark_index])
+        for point in geometry.vertices():
+            z = _number(feature, values[z_index], z_field) if z_field else point.z()
+            xyz.append((point.x(), point.y(), z))
+            attributes.append(row)
+            marks.append(is_marked)
+    n = len(xyz)
+    return Points(
+        np.array(xyz, dtype=np.float64).reshape(n, 3),
+        np.array(attributes, dtype=np.float64).reshape(n, len(attribute_indices)),
+        np.array(marks, dtype=bool),
+    )
+
+
+def read_triangles(source, feedback) -> np.ndarray:
+    """Return the corners of a layer of triangles, ``(n_faces, 3, 3)``: face, corner, x y z.
+
+    Raises
+    ------
+    QgsProcessingException
+        A polygon that is no triangle, or without Z.
+    """
+    if not QgsWkbTypes.hasZ(source.wkbType()):
+        raise QgsProcessingException(
+            tr("{}: the triangles have no Z, so they hold no elevations.").format(source.sourceName())
+        )
+    corners = []
+    for feature in _features(source, feedback):
+        for part in feature.geometry().constParts():
+            ring = part.exteriorRing()
+            if ring is None or ring.numPoints() != 4 or part.numInteriorRings():
+                raise QgsProcessingException(
+                    tr(
+                        "{}: feature {} is no triangle; triangulate the layer first, or give a "
+                        "point layer."
+                    ).format(source.sourceName(), feature.id())
+                )
+            corners.append([(p.x(), p.y(), p.z()) for p in ring.points()[:3]])
+    return np.array(corners, dtype=np.float64).reshape(len(corners), 3, 3)
+
+
+def read_lines(source, transform, feedback) -> list[np.ndarray]:
+    """Return every line (or ring) as an ``(n, 3)`` array; z is NaN where the layer has none.
+
+    Parameters
+    ----------
+    source : QgsProcessingFeatureSource
+    transform : QgsCoordinateTransform or None
+        To the CRS that the lines are wanted in.
+    """
+    lines = []
+    for feature in _features(source, feedback):
+        geometry = feature.geometry()
+        if transform is not None:
+            geometry.transform(transform)
+        for part in geometry.constParts():
+            curves = [part]
+            if hasattr(part, "exteriorRing"):
+                curves = [part.exteriorRing()]
+                curves += [part.interiorRing(k) for k in range(part.numInteriorRings())]
+            for curve in curves:
+                lines.append(np.array([(p.x(), p.y(), p.z()) for p in curve.vertices()]))
+    return lines
+
+
+def add_triangles(sink, fields, vertices, faces, columns, feedback) -> None:
+    """Add one PolygonZ feature for each face.
+
+    Parameters
+    ----------
+    sink : QgsFeatureSink
+    fields : QgsFields
+        Of the sink, in the order of ``columns``.
+    vertices : ndarray, shape (n_vertices, 3)
+        In the layer's CRS.
+    faces : ndarray of int, shape (n_faces, 3)
+    columns : sequence of array
+        One value a face for each field.
+    """
+    records = np.empty(len(faces), dtype=_TRIANGLE_Z)
+    records["order"], records["type"] = 1, 1003
+    records["rings"], records["corners"] = 1, 4
+    records["xyz"] = vertices[faces[:, [0, 1, 2, 0]]]
+    _add(sink, fields, records, columns, feedback)
+
+
+def add_points(sink, fields, positions, columns, feedback) -> None:
+    """Add one PointZ feature for each position; the rest is as for `add_triangles`."""
+    records = np.empty(len(positions), dtype=_POINT_Z)
+    records["order"], records["type"] = 1, 1001
+    records["xyz"] = positions
+    _add(sink, fields, records, columns, feedback)
+
+
+def _add(sink, fields, records, columns, feedback) -> None:
+    size = records.dtype.itemsize
+    lists = [column.tolist() for column in columns]
+    for start in range(0, len(records), CHUNK):
+        _require_running(feedback)
+        stop = min(start + CHUNK, len(records))
+        raw = records[start:stop].tobytes()
+        features = []
+        for k in range(stop - start):
+            feature = QgsFeature(fields)
+            geometry = QgsGeometry()
+            geometry.fromWkb(raw[k * size : (k + 1) * size])
+            feature.setGeometry(geometry)
+            feature.setAttributes([column[start + k] for column in lists])
+            features.append(feature)
+        if not sink.addFeatures(features, QgsFeatureSink.Flag.FastInsert):
+            raise QgsProcessingException(
+                tr("The features could not be written ({}); check the disk and the name.").format(
+                    sink.lastError()
+                )
+            )
+
+
+def _features(source, feedback):
+    for count, feature in enumerate(source.getFeatures()):
+        if count % CHUNK == 0:
+            _require_running(feedback)
+        if feature.hasGeometry():
+            yield feature
+
+
+def _require_running(feedback) -> None:
+    from .bridge import require_running
+
+    require_running(feedback)
+
+
+def _number(feature, value, name) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise QgsProcessingException(
+            tr("Feature {}: field {} holds {}, which is no number; fill or filter it.").format(
+                feature.id(), name, "NULL" if _is_null(value) else repr(value)
+            )
+        ) from error
+
+
+def _is_null(value) -> bool:
+    return value is None or (hasattr(value, "isNull") and value.isNull())
+
+
+def _is_true(value) -> bool:
+    return not _is_null(value) and bool(value) and str(value).strip().lower() not in ("0", "false")

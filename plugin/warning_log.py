@@ -1,0 +1,57 @@
+"""Our named warnings shown in the log of the algorithm that raised them."""
+
+from __future__ import annotations
+
+import threading
+import warnings
+from contextlib import contextmanager
+
+_feedbacks = threading.local()
+_show_before = None
+
+
+@contextmanager
+def shown_in(feedback):
+    """Show the warnings of ``wavelet_gis`` that this thread raises inside the block in its log.
+
+    QGIS runs algorithms in several threads, so Python's own ``catch_warnings``, which swaps the
+    handler of the whole process, will not do: one handler is installed, once, and looks up the
+    feedback of the thread it is called in. All other warnings go where they went before.
+    """
+    _install()
+    outer = getattr(_feedbacks, "current", None)
+    _feedbacks.current = feedback
+    try:
+        yield
+    finally:
+        _feedbacks.current = outer
+
+
+def _install() -> None:
+    global _show_before
+    from wavelet_gis.errors import TerrainWarning
+
+    # Also when the same text comes from the same line again: each run has a log of its own.
+    warnings.simplefilter("always", TerrainWarning)
+    if warnings.showwarning is not _show:
+        _show_before = warnings.showwarning
+        warnings.showwarning = _show
+
+
+def uninstall() -> None:
+    """Put the handler back that was there before."""
+    global _show_before
+    if warnings.showwarning is _show:
+        warnings.showwarning = _show_before
+    _show_before = None
+
+
+def _show(message, category, filename, lineno, file=None, line=None):
+    from wavelet_gis.errors import TerrainWarning
+
+    feedback = getattr(_feedbacks, "current", None)
+    if feedback is not None and issubclass(category, TerrainWarning):
+        text = str(message)
+        feedback.pushWarning(text[:1].upper() + text[1:])
+    elif _show_before is not None:
+        _show_before(message, category, filename, lineno, file, line)
