@@ -1,0 +1,229 @@
+"""Arrays of plain numbers as compressed chunks, read back with every claim checked.
+
+A chunk holds a block of rows: the difference of each row from the one before (integers only), the
+bytes shuffled so that the first bytes of all numbers come first, then zlib. Differences and
+shuffling make faces, indices and smooth weights small; nothing but numbers can be stored.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core.errors import PyramidError
+
+__all__ = ["ArrayHeader", "decode_array", "encode_array", "header_of"]
+
+#: Uncompressed bytes in a chunk, at most. Small enough to be undone in memory twice over.
+CHUNK_BYTES = 4 << 20
+
+#: zlib level: 1 took a third of the time of 6 for 3 % more bytes on pyramids of real DEMs.
+COMPRESSION_LEVEL = 1
+
+#: zlib cannot expand by more than this (1032:1, from its format), so larger claims are false.
+MAX_EXPANSION = 1040
+
+_DTYPES = {
+    np.dtype(code).str: np.dtype(code)
+    for code in ("|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8")
+}
+
+Filter = Literal["shuffle", "delta_shuffle"]
+
+
+@dataclass(frozen=True, slots=True)
+class ArrayHeader:
+    """What a reader must know of an array before its first chunk.
+
+    Attributes
+    ----------
+    dtype : str
+        Little-endian numpy code, such as ``<f8``.
+    shape : tuple of int
+        One or two dimensions.
+    filter : {"shuffle", "delta_shuffle"}
+        What was done before zlib.
+    chunk_rows : int
+        Rows in every chunk but the last.
+    """
+
+    dtype: str
+    shape: tuple[int, ...]
+    filter: Filter
+    chunk_rows: int
+
+    @property
+    def n_bytes(self) -> int:
+        """Uncompressed size."""
+        return math.prod(self.shape) * np.dtype(self.dtype).itemsize
+
+    @property
+    def n_chunks(self) -> int:
+        """Number of chunks."""
+        return -(-self.shape[0] // self.chunk_rows) if self.n_bytes else 0
+
+    @classmethod
+    def checked(cls, dtype: object, shape: object, filter_name: object, chunk_rows: object):
+        """Return a header from values that a stranger wrote.
+
+        Raises
+        ------
+        PyramidError
+            When one of them is nothing that this package writes.
+        """
+        is_shape = (
+            isinstance(shape, list | tuple)
+            and len(shape) in (1, 2)
+            and all(isinstance(n, int) and not isinstance(n, bool) and n >= 0 for n in shape)
+        )
+        is_sound = (
+            dtype in _DTYPES
+            and is_shape
+            and math.prod(shape) < 1 << 40
+            and filter_name in ("shuffle", "delta_shuffle")
+            and isinstance(chunk_rows, int)
+            and chunk_rows >= 1
+        )
+        if not is_sound:
+            raise PyramidError(
+                f"an array is declared as {dtype!r} {shape!r} {filter_name!r} {chunk_rows!r}, which "
+                "no pyramid file holds; the file is damaged."
+            )
+        return cls(str(dtype), tuple(shape), filter_name, chunk_rows)
+
+
+def header_of(array: NDArray[Any]) -> ArrayHeader:
+    """Return the header under which `encode_array` stores an array."""
+    dtype = np.dtype(np.uint8) if array.dtype == bool else array.dtype.newbyteorder("<")
+    if dtype.str not in _DTYPES or array.ndim not in (1, 2):
+        raise PyramidError(
+            f"an array of {array.dtype} with {array.ndim} dimensions cannot be stored; "
+            "use integers or floats of up to 8 bytes in one or two dimensions."
+        )
+    row_bytes = max(dtype.itemsize * math.prod(array.shape[1:]), 1)
+    rows = max(CHUNK_BYTES // row_bytes, 1)
+    filter_name: Filter = "delta_shuffle" if dtype.kind in "iu" else "shuffle"
+    return ArrayHeader(dtype.str, tuple(array.shape), filter_name, rows)
+
+
+def encode_array(array: NDArray[Any], pool: ThreadPoolExecutor | None = None) -> Iterator[bytes]:
+    """Yield the compressed chunks of an array, in order.
+
+    Parameters
+    ----------
+    array : integers, floats or booleans, one or two dimensions
+        What to store. Booleans become bytes.
+    pool : ThreadPoolExecutor, optional
+        Compresses several chunks at once; the result is the same.
+    """
+    header = header_of(array)
+    starts = range(0, header.shape[0], header.chunk_rows) if header.n_bytes else range(0)
+    blocks = (array[start : start + header.chunk_rows] for start in starts)
+    return _in_order(lambda block: _pack(block, header), blocks, pool)
+
+
+def decode_array(
+    header: ArrayHeader,
+    chunks: Iterable[bytes],
+    compressed_bytes: int,
+    pool: ThreadPoolExecutor | None = None,
+) -> NDArray[Any]:
+    """Return the array, its chunks having been checked one by one.
+
+    Parameters
+    ----------
+    header : ArrayHeader
+        Checked before; see `ArrayHeader.checked`.
+    chunks : iterable of bytes
+        In order.
+    compressed_bytes : int
+        Their total, known before they are read, so that no memory is given on a false claim.
+    pool : ThreadPoolExecutor, optional
+        Expands several chunks at once.
+
+    Raises
+    ------
+    PyramidError
+        When the chunks are too few, too many, damaged, or expand to another size than declared.
+    """
+    if header.n_bytes > MAX_EXPANSION * compressed_bytes:
+        raise PyramidError(
+            f"an array claims {header.n_bytes} bytes out of {compressed_bytes} compressed ones, "
+            "more than compression can hold; the file is damaged."
+        )
+    array = np.empty(header.shape, dtype=header.dtype)
+    n_chunks = 0
+    numbered = enumerate(chunks)
+    for index, block in _in_order(lambda job: _unpack(job, header), numbered, pool):
+        start = index * header.chunk_rows
+        array[start : start + header.chunk_rows] = block
+        n_chunks += 1
+    if n_chunks != header.n_chunks:
+        raise PyramidError(
+            f"an array has {n_chunks} chunks where {header.n_chunks} are due; the file is damaged."
+        )
+    return array
+
+
+def _pack(block: NDArray[Any], header: ArrayHeader) -> bytes:
+    dtype = np.dtype(header.dtype)
+    block = np.ascontiguousarray(block, dtype=dtype)
+    if header.filter == "delta_shuffle":
+        bits = block.view(f"<u{dtype.itemsize}")
+        block = bits.copy()
+        block[1:] -= bits[:-1]  # wraps round, and so does the sum that undoes it
+    shuffled = block.reshape(-1).view(np.uint8).reshape(-1, dtype.itemsize).T
+    return zlib.compress(np.ascontiguousarray(shuffled).data, COMPRESSION_LEVEL)
+
+
+def _unpack(job: tuple[int, bytes], header: ArrayHeader) -> tuple[int, NDArray[Any]]:
+    index, chunk = job
+    dtype = np.dtype(header.dtype)
+    n_rows = min(header.chunk_rows, header.shape[0] - index * header.chunk_rows)
+    shape = (n_rows, *header.shape[1:])
+    if n_rows <= 0:
+        raise PyramidError("an array has more chunks than are due; the file is damaged.")
+    raw = _expand(chunk, math.prod(shape) * dtype.itemsize)
+    plain = np.ascontiguousarray(np.frombuffer(raw, np.uint8).reshape(dtype.itemsize, -1).T)
+    if header.filter == "delta_shuffle":
+        steps = plain.reshape(-1).view(f"<u{dtype.itemsize}").reshape(shape)
+        return index, np.cumsum(steps, axis=0, dtype=steps.dtype).view(dtype)
+    return index, plain.reshape(-1).view(dtype).reshape(shape)
+
+
+def _expand(chunk: bytes, n_bytes: int) -> bytes:
+    """Expand a chunk to exactly the bytes that are due, never to more."""
+    expander = zlib.decompressobj()
+    try:
+        raw = expander.decompress(chunk, n_bytes)
+        # The end marker may still be due; one more byte than due would be a bomb's first.
+        surplus = b"" if expander.eof else expander.decompress(expander.unconsumed_tail, 1)
+    except zlib.error as error:
+        raise PyramidError(f"a chunk cannot be expanded ({error}); the file is damaged.") from error
+    if len(raw) != n_bytes or surplus or not expander.eof or expander.unused_data:
+        raise PyramidError(
+            f"a chunk does not expand to the {n_bytes} bytes that are due; the file is damaged."
+        )
+    return raw
+
+
+def _in_order(
+    work: Callable[[Any], Any], jobs: Iterable[Any], pool: ThreadPoolExecutor | None
+) -> Iterator[Any]:
+    """Yield the results in the order of the jobs, at most a few jobs ahead of the reader."""
+    if pool is None:
+        yield from map(work, jobs)
+        return
+    remaining = iter(jobs)
+    waiting = [pool.submit(work, job) for job in islice(remaining, 4)]
+    while waiting:
+        yield waiting.pop(0).result()
+        waiting.extend(pool.submit(work, job) for job in islice(remaining, 1))

@@ -1,0 +1,227 @@
+"""From a file to the mesh that is analysed, and to all that is needed to come back."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from wavelet_core import Pyramid, TriangleMesh
+from wavelet_gis.crs import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
+from wavelet_gis.dem import Dem, RasterSource, dem_mesh, grid_bounds
+from wavelet_gis.errors import CrsWarning, InputFileError, UnitWarning
+from wavelet_gis.points import PointCloud, PointSource, cloud_bounds, cloud_mesh
+from wavelet_gis.record import PyramidRecord
+
+__all__ = ["CLOUD_SUFFIXES", "Terrain", "open_terrain", "terrain_of_cloud", "terrain_of_dem"]
+
+#: What is read with laspy; anything else is left to GDAL.
+CLOUD_SUFFIXES = (".las", ".laz")
+
+
+@dataclass(frozen=True, slots=True)
+class Terrain:
+    """A terrain in its working frame, ready to be analysed.
+
+    Attributes
+    ----------
+    name : str
+        Of the file, for messages and metadata.
+    mesh : TriangleMesh
+        In the working frame.
+    original : Dem or PointCloud
+        As it came.
+    source : RasterSource or PointSource
+        How to come back; without a ledger until there is a pyramid.
+    system : CoordinateSystem
+        The CRS.
+    frame : LocalFrame
+        Between the file's coordinates and those of the mesh.
+    vertical_unit : str
+        Unit of z in the file.
+    """
+
+    name: str
+    mesh: TriangleMesh
+    original: Dem | PointCloud
+    source: RasterSource | PointSource
+    system: CoordinateSystem
+    frame: LocalFrame
+    vertical_unit: str
+
+    def record(self, pyramid: Pyramid) -> PyramidRecord:
+        """Return the pyramid with everything that its file must hold.
+
+        The finest mesh is synthesised once, to keep what rounding loses.
+        """
+        finest = pyramid.synthesise()
+        source = self.source.with_ledger(self.original, finest, self.frame)  # type: ignore[arg-type]
+        return PyramidRecord(
+            pyramid=pyramid,
+            system=self.system,
+            frame=self.frame,
+            vertical_unit=self.vertical_unit,
+            source=source,
+            source_name=self.name,
+        )
+
+
+def open_terrain(
+    path: str | os.PathLike[str],
+    *,
+    band: int | None = None,
+    attributes: Sequence[str] = (),
+    classes: Sequence[int] | None = None,
+    carry: bool = True,
+    crs: str | None = None,
+    vertical_unit: str | None = None,
+) -> Terrain:
+    """The terrain in a raster or a LAS file.
+
+    Parameters
+    ----------
+    path : path
+        ``.las`` and ``.laz`` are read with laspy, all else with GDAL.
+    band : int, optional
+        Of a raster, from 1.
+    attributes, classes, carry
+        Of a point cloud; see `wavelet_gis.pointcloud.read_cloud`.
+    crs : str, optional
+        Instead of the CRS in the file.
+    vertical_unit : str, optional
+        Unit of z, instead of what the file tells.
+
+    Raises
+    ------
+    InputFileError, CrsError, MeshError
+        As the readers do.
+
+    Warns
+    -----
+    CrsWarning
+        When there is no CRS, or one whose x and y are no map plane.
+    UnitWarning
+        When z is in another unit than the working frame and is converted.
+    """
+    from wavelet_gis.crs_lookup import coordinate_system
+
+    override = coordinate_system(crs) if crs else None
+    if Path(path).suffix.lower() in CLOUD_SUFFIXES:
+        from wavelet_gis.pointcloud import read_cloud
+
+        if band is not None:
+            raise InputFileError(f"{path}: a point cloud has no bands; leave --band out.")
+        with warnings.catch_warnings():
+            if override is not None:  # what is wrong with the file's own CRS is of no matter
+                warnings.simplefilter("ignore", CrsWarning)
+            cloud, wkt, unit = read_cloud(
+                path, attributes=attributes, classes=classes, carry=carry
+            )
+        system = override or coordinate_system(wkt)
+        return terrain_of_cloud(os.fspath(path), cloud, system, vertical_unit or unit)
+    from wavelet_gis.raster import read_dem
+
+    if attributes or classes is not None:
+        raise InputFileError(
+            f"{path}: --attributes and --classes are for point clouds; leave them out for a raster."
+        )
+    dem, wkt, unit = read_dem(path, band=band)
+    system = override or coordinate_system(wkt)
+    return terrain_of_dem(os.fspath(path), dem, system, vertical_unit or _known_unit(unit))
+
+
+def terrain_of_dem(
+    name: str, dem: Dem, system: CoordinateSystem, vertical_unit: str | None = None
+) -> Terrain:
+    """The terrain of a DEM that is in memory already, as QGIS hands it over.
+
+    Parameters
+    ----------
+    name : str
+        For messages and metadata.
+    dem : Dem
+        The raster.
+    system : CoordinateSystem
+        Its CRS.
+    vertical_unit : str, optional
+        Unit of z; see `wavelet_gis.crs.working_frame` for what holds without it.
+    """
+    if not dem.valid.any():
+        raise InputFileError(
+            f"{name}: every cell of the raster is nodata, so there is no terrain in it; check the "
+            "band and the nodata value."
+        )
+    frame, unit = _frame(name, system, grid_bounds(dem.geometry), vertical_unit)
+    mesh = dem_mesh(dem, frame)
+    if mesh.n_faces == 0:
+        raise InputFileError(
+            f"{name}: no three neighbouring cells have data, so there is no surface; check the "
+            "band and the nodata value."
+        )
+    return Terrain(name, mesh, dem, RasterSource.from_dem(dem), system, frame, unit)
+
+
+def terrain_of_cloud(
+    name: str, cloud: PointCloud, system: CoordinateSystem, vertical_unit: str | None = None
+) -> Terrain:
+    """The terrain of a point cloud that is in memory already.
+
+    Parameters
+    ----------
+    name : str
+        For messages and metadata.
+    cloud : PointCloud
+        The points.
+    system : CoordinateSystem
+        Their CRS.
+    vertical_unit : str, optional
+        Unit of z; see `wavelet_gis.crs.working_frame` for what holds without it.
+    """
+    frame, unit = _frame(name, system, cloud_bounds(cloud), vertical_unit)
+    mesh, source = cloud_mesh(cloud, frame)
+    return Terrain(name, mesh, cloud, source, system, frame, unit)
+
+
+def _frame(
+    name: str,
+    system: CoordinateSystem,
+    bounds: tuple[float, float, float, float],
+    vertical_unit: str | None,
+) -> tuple[LocalFrame, str]:
+    frame = working_frame(system, bounds, vertical_unit)
+    if system.wkt is None:
+        _warn(f"{name}: there is no CRS; x, y and z are taken as they are (give one with --crs)")
+    elif system.kind == "unknown":
+        _warn(
+            f"{name}: the CRS {system.name!r} is neither geographic nor projected; x, y and z are "
+            "taken as they are (give another with --crs)"
+        )
+    unit = vertical_unit or system.vertical_unit
+    if unit is None:
+        unit = "metre" if system.kind == "geographic" else "unit of x and y"
+    else:
+        unit = vertical_unit_name(unit)
+    if frame.z_scale != 1.0 and abs(frame.z_scale - 1.0) > 1e-5:
+        warnings.warn(
+            f"{name}: z is in {unit.replace('_', ' ')} and is converted to the unit of the "
+            "horizontal plane while working; results are in the file's units",
+            UnitWarning,
+            stacklevel=3,
+        )
+    return frame, unit
+
+
+def _warn(message: str) -> None:
+    warnings.warn(message, CrsWarning, stacklevel=4)
+
+
+def _known_unit(unit: str | None) -> str | None:
+    """The unit that a raster band names, if it is a length that we know."""
+    from wavelet_gis.errors import CrsError
+
+    try:
+        return vertical_unit_name(unit) if unit else None
+    except CrsError:
+        return None
