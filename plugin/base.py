@@ -23,7 +23,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
     """Base of every algorithm.
 
     A subclass gives ``name`` (public, never changed), ``displayName``, ``GROUP``, ``tags``,
-    ``about``, ``initAlgorithm`` and ``run``; the rest is here.
+    ``about``, ``initAlgorithm`` and ``work``; the rest is here.
     """
 
     #: Id and translatable name of the group in the toolbox; see ``groups.py``.
@@ -97,20 +97,28 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         """Return what these parameters need beyond numpy and scipy."""
         return self.PACKAGES
 
-    def processAlgorithm(self, parameters, context, feedback):
-        """Run, with every error of ours as a message in the log rather than a traceback."""
+    def prepareAlgorithm(self, parameters, context, feedback):
+        """Refuse where a package is missing, then take what needs the layers' own thread."""
         refusal = dependencies.refusal(self.packages(parameters, context))
         if refusal:
             raise QgsProcessingException(refusal)
+        install_finder()
+        self.prepare(parameters, context, feedback)
+        return True
+
+    def prepare(self, parameters, context, feedback):
+        """Take from layers, in their own thread, what `work` needs of them."""
+
+    def processAlgorithm(self, parameters, context, feedback):
+        """Run, with every error of ours as a message in the log rather than a traceback."""
         slow = dependencies.slow_without_numba()
         if slow:
             feedback.pushWarning(slow)
-        install_finder()
         from wavelet_core.errors import Cancelled, WaveletError
 
         try:
             with shown_in(feedback):
-                return self.run(parameters, context, feedback)
+                return self.work(parameters, context, feedback)
         except Cancelled:
             feedback.pushInfo(self.tr("Cancelled; nothing was written."))
             return {}
@@ -124,7 +132,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
                 )
             ) from error
 
-    def run(self, parameters, context, feedback):
+    def work(self, parameters, context, feedback):
         """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""
         raise AssertionError(f"{self.name()} does nothing")
 

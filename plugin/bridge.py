@@ -59,7 +59,7 @@ def coordinate_system(crs: QgsCoordinateReferenceSystem):
             kind, unit = "geographic", system.GetAngularUnits()
         elif system.IsProjected():
             kind, unit = "projected", system.GetLinearUnits()
-        vertical_unit = _known_unit(system.GetAttrValue("VERT_CS|UNIT"))
+        vertical_unit = known_unit(system.GetAttrValue("VERT_CS|UNIT"))
     return CoordinateSystem(
         wkt=wkt,
         name=crs.description() or crs.authid(),
@@ -71,7 +71,8 @@ def coordinate_system(crs: QgsCoordinateReferenceSystem):
     )
 
 
-def _known_unit(name: str | None) -> str | None:
+def known_unit(name: str | None) -> str | None:
+    """Return a unit as ``wavelet_gis`` names it, or None for one that is no length known to it."""
     from wavelet_gis.crs import vertical_unit_name
     from wavelet_gis.errors import CrsError
 

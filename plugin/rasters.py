@@ -108,6 +108,16 @@ class RasterInput:
             hidden=hidden,
         )
 
+    def vertical_unit(self) -> str | None:
+        """Return the unit of elevation that the band names, or None."""
+        from .bridge import known_unit
+
+        if self.path is None:
+            return None
+        with without_exceptions(gdal):
+            dataset = gdal.Open(self.path)
+            return known_unit(dataset.GetRasterBand(self.band).GetUnitType()) if dataset else None
+
 
 def read_dem(raster: RasterInput, feedback):
     """Return the layer's band as a ``Dem``.

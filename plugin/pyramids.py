@@ -1,0 +1,103 @@
+"""Pyramid files in and out, and what algorithms say of them in numbers."""
+
+from __future__ import annotations
+
+import os
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingException,
+    QgsProcessingOutputNumber,
+)
+
+from .bridge import progress
+from .translation import tr
+
+
+def load(path: str):
+    """Return the ``PyramidRecord`` in a pyramid file."""
+    from wavelet_gis.pyramid_file import read_pyramid
+
+    # A layer of the file may have been handed on by a model, as 'file.gpkg|layername=coarse_tin'.
+    return read_pyramid(path.split("|")[0])
+
+
+def save(record, path: str, feedback, start: float, stop: float) -> None:
+    """Write a record as a GeoPackage, whole or not at all; an existing file is replaced."""
+    from wavelet_gis.atomic import new_file
+    from wavelet_gis.pyramid_file import write_pyramid
+
+    with new_file(path, overwrite=True) as scratch:
+        write_pyramid(scratch, record, progress(feedback, start, stop))
+
+
+def crs_of(record) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of a record's input; an invalid one where it had none."""
+    if record.system.wkt is None:
+        return QgsCoordinateReferenceSystem()
+    return QgsCoordinateReferenceSystem.fromWkt(record.system.wkt)
+
+
+def checked_level(record, level: int) -> int:
+    """Return a level that the pyramid has.
+
+    Raises
+    ------
+    QgsProcessingException
+        When there is no such level.
+    """
+    n_levels = record.pyramid.n_levels
+    if not 0 <= level <= n_levels:
+        raise QgsProcessingException(
+            tr("There is no level {}; the levels of this pyramid are 0 (coarsest) to {}.").format(
+                level, n_levels
+            )
+        )
+    return level
+
+
+def add_figure_outputs(algorithm) -> None:
+    """Declare the numbers that `figures` returns."""
+    for name, description in (
+        ("N_LEVELS", tr("Number of levels")),
+        ("N_VERTICES", tr("Vertices of the input")),
+        ("N_FACES", tr("Triangles of the input")),
+        ("COARSE_VERTICES", tr("Vertices of the coarsest level")),
+        ("COARSE_FACES", tr("Triangles of the coarsest level")),
+        ("RMSE_SURFACE", tr("RMSE of the coarsest surface at all input points, in the unit of elevation")),
+        ("MAX_ERROR_SURFACE", tr("Largest error of the coarsest surface, in the unit of elevation")),
+        ("RMSE_COEFFICIENTS", tr("RMSE of the coefficients at the coarsest level (no unit)")),
+    ):
+        algorithm.addOutput(QgsProcessingOutputNumber(name, description))
+
+
+def figures(record) -> dict:
+    """Return sizes and errors of a record whose errors have been computed."""
+    finest, coarsest = record.errors[0], record.errors[-1]
+    scale = record.frame.z_scale
+    return {
+        "N_LEVELS": record.pyramid.n_levels,
+        "N_VERTICES": finest.n_vertices,
+        "N_FACES": finest.n_faces,
+        "COARSE_VERTICES": coarsest.n_vertices,
+        "COARSE_FACES": coarsest.n_faces,
+        "RMSE_SURFACE": coarsest.rmse_surface / scale,
+        "MAX_ERROR_SURFACE": coarsest.max_error_surface / scale,
+        "RMSE_COEFFICIENTS": coarsest.rmse_coefficients,
+    }
+
+
+def log_levels(record, feedback) -> None:
+    """Write the table of levels to the log."""
+    scale = record.frame.z_scale
+    feedback.pushInfo(tr("level   vertices  triangles  RMSE of surface  largest error"))
+    for errors in record.errors:
+        feedback.pushInfo(
+            f"{errors.level:5d} {errors.n_vertices:10d} {errors.n_faces:10d} "
+            f"{errors.rmse_surface / scale:16.4f} {errors.max_error_surface / scale:14.4f}"
+        )
+
+
+def default_name(path: str) -> str:
+    """Return the file's name without folder and suffix."""
+    return os.path.splitext(os.path.basename(path))[0]
