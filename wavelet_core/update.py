@@ -102,7 +102,8 @@ def apply_ring_means(
     Eq. 46 adds :math:`w/(N+1) + \sum (N p_m - 1) / (N (N+1))\, s_m` to the whole ring of each odd
     vertex. *Our choice:* one odd vertex after the other, in removal order. The added constant
     cancels in the sum, because :math:`\sum (N p_m - 1) = 0`, so the same formula in reverse order
-    undoes it exactly. Locked vertices are left out of the ring, and p is rescaled to the rest.
+    undoes it exactly. Locked vertices are left out of the ring, and p is shifted to sum to 1 over
+    the rest (rescaling would divide by a sum that may vanish where weights have either sign).
     """
     result = np.array(even, dtype=np.float64, order="C")
     kernel = subtract_ring_means if undo else add_ring_means

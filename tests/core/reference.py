@@ -261,15 +261,14 @@ def one_ring_mean_update(
 ) -> np.ndarray:
     """Return the even coefficients after Eq. 46, one odd vertex after the other.
 
-    Where the support leaves locked vertices out, p is rescaled to what remains.
+    Where the support leaves locked vertices out, p is shifted to sum to 1 over what remains.
     """
     s = s.copy()
     for k, ring in enumerate(support):
         n = len(ring)
         if n == 0:
             continue
-        share = p[k, ring]
-        share = share / share.sum() if share.sum() else np.full(n, 1 / n)
+        share = p[k, ring] + (1 - p[k, ring].sum()) / n
         change = w[k] / (n + 1)
         for weight, m in zip(share, ring, strict=True):
             change = change + (n * weight - 1) / (n * (n + 1)) * s[m]

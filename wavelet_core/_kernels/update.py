@@ -3,7 +3,9 @@
 from ._jit import njit
 
 
-# The constant that Eq. 46 adds to the unlocked ring of one odd vertex, for one channel.
+# The constant that Eq. 46 adds to the unlocked ring of one odd vertex, for one channel:
+# w/(N+1) + sum (p_m - mean p)/(N+1) s_m, which is Eq. 46 where p sums to 1 over the ring. Shifting
+# p rather than rescaling it keeps it bounded where the unlocked weights nearly cancel.
 @njit
 def ring_constant(first, last, columns, weights, detail, locked, even, channel):
     n_free, total = 0, 0.0
@@ -16,10 +18,8 @@ def ring_constant(first, last, columns, weights, detail, locked, even, channel):
     constant = detail / (n_free + 1.0)
     for k in range(first, last):
         if not locked[columns[k]]:
-            share = weights[k] / total if abs(total) > 1e-12 else 1.0 / n_free
-            constant += (
-                (n_free * share - 1.0) / (n_free * (n_free + 1.0)) * even[columns[k], channel]
-            )
+            excess = weights[k] - total / n_free
+            constant += excess / (n_free + 1.0) * even[columns[k], channel]
     return constant
 
 
