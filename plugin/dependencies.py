@@ -34,6 +34,11 @@ SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
 ALWAYS = (NUMPY, SCIPY)
 
 
+def for_las(path: str) -> tuple[Package, ...]:
+    """Return what a LAS file needs, and a compressed one more."""
+    return (LASPY, LAZRS) if path.lower().endswith(".laz") else (LASPY,)
+
+
 def missing(packages) -> list[Package]:
     """Return those of ``packages`` that cannot be found, without importing them."""
     return [package for package in packages if importlib.util.find_spec(package.module) is None]

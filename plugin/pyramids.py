@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from itertools import chain
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -23,12 +24,19 @@ def load(path: str):
 
 
 def save(record, path: str, feedback, start: float, stop: float) -> None:
-    """Write a record as a GeoPackage, whole or not at all; an existing file is replaced."""
+    """Write a record with its layers as a GeoPackage, whole or not at all; it replaces another."""
     from wavelet_gis.atomic import new_file
+    from wavelet_gis.layers import coarse_layers, detail_layers
     from wavelet_gis.pyramid_file import write_pyramid
 
+    from .geopackage import add_layers
+
+    middle = (start + stop) / 2
     with new_file(path, overwrite=True) as scratch:
-        write_pyramid(scratch, record, progress(feedback, start, stop))
+        write_pyramid(scratch, record, progress(feedback, start, middle))
+        layers = chain(coarse_layers(record), detail_layers(record))
+        add_layers(scratch, layers, record.system.wkt, feedback)
+    progress(feedback, middle, stop)(1.0)
 
 
 def crs_of(record) -> QgsCoordinateReferenceSystem:

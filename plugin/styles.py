@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 from qgis.core import (
-    QgsApplication,
-    QgsClassificationEqualInterval,
-    QgsGraduatedSymbolRenderer,
+    QgsCategorizedSymbolRenderer,
     QgsHillshadeRenderer,
-    QgsFillSymbol,
-    QgsMarkerSymbol,
     QgsProcessingLayerPostProcessorInterface,
-    QgsProperty,
-    QgsRendererRangeLabelFormat,
-    QgsStyle,
-    QgsSymbolLayer,
+    QgsRendererCategory,
+    QgsVectorLayerUtils,
 )
-from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtXml import QDomDocument
 
-#: Names of colour ramps in QGIS's own style, and what stands in where it lacks one.
-RAMPS = {"elevation": ("Viridis", "Greys"), "slope": ("YlOrBr", "Greys"), "level": ("Spectral", "Viridis")}
+from .translation import tr
 
 
 class _Style(QgsProcessingLayerPostProcessorInterface):
@@ -35,25 +28,34 @@ class _Style(QgsProcessingLayerPostProcessorInterface):
 
 
 def style_tin(layer) -> None:
-    """Fill the faces by elevation, with hair-thin edges."""
-    symbol = QgsFillSymbol.createSimple(
-        {"outline_color": "60,60,60,120", "outline_width": "0.06", "style": "solid"}
-    )
-    _graduate(layer, "z", symbol, "elevation", 9, 0)
+    """Colour the faces by elevation, with hair-thin edges, as in a pyramid file."""
+    import numpy as np
+    from wavelet_gis.styles import tin_style
+
+    values, is_found = QgsVectorLayerUtils.getValues(layer, "elevation")
+    if is_found:
+        _apply(layer, tin_style(np.array(values, dtype=np.float64)))
 
 
 def style_details(layer) -> None:
-    """Colour the points by level and size them by magnitude (the paper's Fig. 10b)."""
-    symbol = QgsMarkerSymbol.createSimple(
-        {"name": "circle", "size": "1.2", "outline_style": "no"}
-    )
-    largest = layer.maximumValue(layer.fields().lookupField("magnitude"))
-    largest = float(largest) if isinstance(largest, (int, float)) and largest > 0 else 1.0
-    # Area, not width, shows the magnitude; the smallest stay visible.
-    size = QgsProperty.fromExpression(f'0.3 + 3.2 * sqrt("magnitude" / {largest!r})')
-    symbol.symbolLayer(0).setDataDefinedProperty(QgsSymbolLayer.Property.PropertySize, size)
-    levels = layer.uniqueValues(layer.fields().lookupField("level"))
-    _graduate(layer, "level", symbol, "level", max(len(levels), 1), 0)
+    """Colour the points by level and size them by magnitude (the paper's Fig. 10b).
+
+    Each level looks as its own layer does in a pyramid file.
+    """
+    import numpy as np
+    from wavelet_gis.styles import detail_style
+
+    values, _ = QgsVectorLayerUtils.getValues(layer, "magnitude")
+    magnitude = np.array(values, dtype=np.float64)
+    levels = sorted(layer.uniqueValues(layer.fields().lookupField("level")))
+    n_levels = 1 + max(levels, default=0)
+    categories = []
+    for level in levels:
+        _apply(layer, detail_style(level, n_levels, magnitude))
+        symbol = layer.renderer().symbol().clone()
+        categories.append(QgsRendererCategory(level, symbol, tr("level {}").format(level)))
+    if categories:
+        layer.setRenderer(QgsCategorizedSymbolRenderer("level", categories))
 
 
 def style_hillshade(layer) -> None:
@@ -66,24 +68,10 @@ def style_hillshade(layer) -> None:
     layer.setRenderer(renderer)
 
 
-def _graduate(layer, field, symbol, ramp_name, n_classes, decimals) -> None:
-    renderer = QgsGraduatedSymbolRenderer(field)
-    renderer.setSourceSymbol(symbol)
-    renderer.setClassificationMethod(QgsClassificationEqualInterval())
-    label = QgsRendererRangeLabelFormat("%1 – %2", decimals)
-    del label
-    renderer.updateClasses(layer, n_classes)
-    renderer.updateColorRamp(_ramp(ramp_name))
-    layer.setRenderer(renderer)
-
-
-def _ramp(name):
-    style = QgsStyle.defaultStyle()
-    for candidate in RAMPS[name]:
-        ramp = style.colorRamp(candidate)
-        if ramp is not None:
-            return ramp
-    return style.colorRamp(style.colorRampNames()[0])
+def _apply(layer, qml: str) -> None:
+    document = QDomDocument()
+    document.setContent(qml)
+    layer.importNamedStyle(document)
 
 
 # Processing keeps no reference to a post-processor, so these live as long as the module.

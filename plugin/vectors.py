@@ -8,20 +8,19 @@ import numpy as np
 from qgis.core import (
     QgsFeature,
     QgsFeatureSink,
+    QgsField,
+    QgsFields,
     QgsGeometry,
     QgsProcessingException,
     QgsWkbTypes,
 )
 
+from .bridge import require_running
+from .field_types import DOUBLE, INTEGER
 from .translation import tr
 
 #: Features read or written between two looks at the cancel button.
 CHUNK = 5_000
-
-_POINT_Z = np.dtype([("order", "u1"), ("type", "<u4"), ("xyz", "<f8", 3)])
-_TRIANGLE_Z = np.dtype(
-    [("order", "u1"), ("type", "<u4"), ("rings", "<u4"), ("corners", "<u4"), ("xyz", "<f8", (4, 3))]
-)
 
 
 class Points(NamedTuple):
@@ -131,49 +130,49 @@ def read_lines(source, transform, feedback) -> list[np.ndarray]:
     return lines
 
 
-def add_triangles(sink, fields, vertices, faces, columns, feedback) -> None:
-    """Add one PolygonZ feature for each face.
+def fields_of(layer) -> QgsFields:
+    """Return the fields of a ``wavelet_gis.layers.Layer``."""
+    fields = QgsFields()
+    for name, column in layer.fields.items():
+        fields.append(QgsField(name, DOUBLE if column.dtype.kind == "f" else INTEGER))
+    return fields
+
+
+def wkb_type_of(layer):
+    """Return the geometry type of a ``wavelet_gis.layers.Layer``."""
+    types = QgsWkbTypes.Type
+    return {"Point Z": types.PointZ, "Polygon Z": types.PolygonZ}[layer.geometry_type]
+
+
+def add_layer(sink, layer, feedback, rows=None) -> int:
+    """Add the features of a ``wavelet_gis.layers.Layer`` to a sink made with its fields.
 
     Parameters
     ----------
     sink : QgsFeatureSink
-    fields : QgsFields
-        Of the sink, in the order of ``columns``.
-    vertices : ndarray, shape (n_vertices, 3)
-        In the layer's CRS.
-    faces : ndarray of int, shape (n_faces, 3)
-    columns : sequence of array
-        One value a face for each field.
+    layer : Layer
+    feedback : QgsProcessingFeedback
+    rows : array of int, optional
+        Which of them; all by default.
+
+    Returns
+    -------
+    int
+        Number of features added.
     """
-    records = np.empty(len(faces), dtype=_TRIANGLE_Z)
-    records["order"], records["type"] = 1, 1003
-    records["rings"], records["corners"] = 1, 4
-    records["xyz"] = vertices[faces[:, [0, 1, 2, 0]]]
-    _add(sink, fields, records, columns, feedback)
-
-
-def add_points(sink, fields, positions, columns, feedback) -> None:
-    """Add one PointZ feature for each position; the rest is as for `add_triangles`."""
-    records = np.empty(len(positions), dtype=_POINT_Z)
-    records["order"], records["type"] = 1, 1001
-    records["xyz"] = positions
-    _add(sink, fields, records, columns, feedback)
-
-
-def _add(sink, fields, records, columns, feedback) -> None:
-    size = records.dtype.itemsize
-    lists = [column.tolist() for column in columns]
-    for start in range(0, len(records), CHUNK):
-        _require_running(feedback)
-        stop = min(start + CHUNK, len(records))
-        raw = records[start:stop].tobytes()
+    fields = fields_of(layer)
+    selected = slice(None) if rows is None else rows
+    geometries = layer.geometry[selected]
+    columns = [column[selected].tolist() for column in layer.fields.values()]
+    for start in range(0, len(geometries), CHUNK):
+        require_running(feedback)
         features = []
-        for k in range(stop - start):
+        for k in range(start, min(start + CHUNK, len(geometries))):
             feature = QgsFeature(fields)
             geometry = QgsGeometry()
-            geometry.fromWkb(raw[k * size : (k + 1) * size])
+            geometry.fromWkb(geometries[k])
             feature.setGeometry(geometry)
-            feature.setAttributes([column[start + k] for column in lists])
+            feature.setAttributes([column[k] for column in columns])
             features.append(feature)
         if not sink.addFeatures(features, QgsFeatureSink.Flag.FastInsert):
             raise QgsProcessingException(
@@ -181,20 +180,15 @@ def _add(sink, fields, records, columns, feedback) -> None:
                     sink.lastError()
                 )
             )
+    return len(geometries)
 
 
 def _features(source, feedback):
     for count, feature in enumerate(source.getFeatures()):
         if count % CHUNK == 0:
-            _require_running(feedback)
+            require_running(feedback)
         if feature.hasGeometry():
             yield feature
-
-
-def _require_running(feedback) -> None:
-    from .bridge import require_running
-
-    require_running(feedback)
 
 
 def _number(feature, value, name) -> float:

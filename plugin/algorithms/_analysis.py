@@ -47,15 +47,11 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         """Return the ``wavelet_gis.terrain.Terrain`` that the parameters name."""
         raise AssertionError(f"{self.name()} reads no terrain")
 
-    def crs(self):
-        """Return the CRS of the outputs; called after `terrain`."""
-        raise AssertionError(f"{self.name()} has no CRS")
-
     def work(self, parameters, context, feedback):
         """Read, analyse, measure, write."""
         from wavelet_core import analyse
 
-        from .. import pyramids, tin_layer
+        from .. import pyramids, tin_output
         from ..bridge import progress, require_running
 
         output = self.parameterAsFileOutput(parameters, "OUTPUT", context)
@@ -77,11 +73,10 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         feedback.setProgressText(self.tr("Writing the pyramid"))
         pyramids.save(record, output, feedback, 0.75, 0.95)
         results = {"OUTPUT": output, **pyramids.figures(record)}
-        sink, destination = tin_layer.sink_of(self, parameters, "COARSE_TIN", context, self.crs())
-        if sink is not None:
-            tin_layer.add_level(sink, record, 0, feedback)
-            tin_layer.style(context, destination)
-            results["COARSE_TIN"] = destination
+        if parameters.get("COARSE_TIN"):
+            results["COARSE_TIN"] = tin_output.write_tin(
+                self, parameters, "COARSE_TIN", context, record, 0, feedback
+            )
         feedback.setProgress(100)
         return results
 

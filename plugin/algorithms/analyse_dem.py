@@ -61,10 +61,6 @@ class AnalyseDem(AnalysisAlgorithm):
             layer, self.parameterAsInt(parameters, "BAND", context)
         )
 
-    def crs(self):
-        """Return the layer's CRS."""
-        return self.raster.crs
-
     def terrain(self, parameters, context, feedback):
         """Return the terrain in the layer."""
         from wavelet_gis.terrain import terrain_of_dem
