@@ -180,7 +180,11 @@ def prediction_weights(
     ring = one_ring(faces, odd)
     if method == "barycentric":
         return barycentric_weights(plan, faces, odd, target)
-    if method == "uniform":
+    if method == "plane":
+        # The value at the vertex of the plane fitted to the ring: row 0 of the pseudo-inverse.
+        offsets = plan[ring] - plan[odd]
+        omega = np.linalg.pinv(np.column_stack([np.ones(len(ring)), offsets]))[0]
+    elif method == "uniform":
         omega = np.ones(len(ring))
     elif method == "cotangent":
         omega = np.array([max(cotangent_sum(points, faces, odd, w), 0.0) for w in ring])

@@ -80,11 +80,12 @@ def test_filters_and_coefficients(mesh_name, prediction, update, signal):
 
 
 @pytest.mark.parametrize("update", helpers.UPDATES)
+@pytest.mark.parametrize("prediction", helpers.PLAN_PREDICTIONS)
 @pytest.mark.parametrize("mesh_name", ["delaunay", "delaunay, z alone", "open fan"])
-def test_barycentric_filters_and_coefficients(mesh_name, update):
+def test_filters_beyond_the_paper(mesh_name, prediction, update):
     """On a grid an odd vertex may lie on an edge of two covering faces; so these are no grids."""
     mesh = MESHES[mesh_name]()
-    options = {"prediction": "barycentric", "update": update, "signal": "z"}
+    options = {"prediction": prediction, "update": update, "signal": "z"}
     pyramid = analyse(mesh, levels=LEVELS, partition="quadric", **options)
     analysis = reference.analyse(
         mesh.vertices,
