@@ -27,6 +27,7 @@ SCIPY = Package("scipy", "scipy", "python3-scipy")
 NUMBA = Package("numba", "numba", "python3-numba")
 LASPY = Package("laspy", "laspy[lazrs]")
 LAZRS = Package("lazrs", "lazrs")
+PYPROJ = Package("pyproj", "pyproj", "python3-pyproj")
 PYTHONCDT = Package("pythoncdt", "PythonCDT")
 SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
 
@@ -36,7 +37,7 @@ ALWAYS = (NUMPY, SCIPY)
 
 def for_las(path: str) -> tuple[Package, ...]:
     """Return what a LAS file needs, and a compressed one more."""
-    return (LASPY, LAZRS) if path.lower().endswith(".laz") else (LASPY,)
+    return (LASPY, LAZRS, PYPROJ) if path.lower().endswith(".laz") else (LASPY, PYPROJ)
 
 
 def missing(packages) -> list[Package]:

@@ -95,6 +95,17 @@ def figures(record) -> dict:
     }
 
 
+def level_figures(record, level: int) -> dict:
+    """Return the errors of a level as the file tells them; empty where it does not."""
+    for errors in record.errors or ():
+        if errors.level == level:
+            return {
+                "RMSE_SURFACE": errors.rmse_surface / record.frame.z_scale,
+                "MAX_ERROR_SURFACE": errors.max_error_surface / record.frame.z_scale,
+            }
+    return {}
+
+
 def log_levels(record, feedback) -> None:
     """Write the table of levels to the log."""
     scale = record.frame.z_scale

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+
 from qgis.core import (
     QgsCategorizedSymbolRenderer,
+    QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
     QgsProcessingLayerPostProcessorInterface,
     QgsRendererCategory,
@@ -68,6 +71,14 @@ def style_hillshade(layer) -> None:
     layer.setRenderer(renderer)
 
 
+def set_mesh_crs(layer) -> None:
+    """Give a mesh the CRS that its file cannot hold, from the .prj written beside it."""
+    path = os.path.splitext(layer.source())[0] + ".prj"
+    if not layer.crs().isValid() and os.path.isfile(path):
+        with open(path, encoding="utf-8") as file:
+            layer.setCrs(QgsCoordinateReferenceSystem.fromWkt(file.read()))
+
+
 def _apply(layer, qml: str) -> None:
     document = QDomDocument()
     document.setContent(qml)
@@ -78,6 +89,7 @@ def _apply(layer, qml: str) -> None:
 TIN = _Style(style_tin)
 DETAILS = _Style(style_details)
 HILLSHADE = _Style(style_hillshade)
+MESH = _Style(set_mesh_crs)
 
 
 def style_output(context, destination, style) -> None:
@@ -89,7 +101,7 @@ def style_output(context, destination, style) -> None:
     destination : str
         As ``parameterAsSink`` or the output map names it.
     style : _Style
-        ``TIN``, ``DETAILS`` or ``HILLSHADE``.
+        ``TIN``, ``DETAILS``, ``HILLSHADE`` or ``MESH``.
     """
     if destination and context.willLoadLayerOnCompletion(destination):
         context.layerToLoadOnCompletionDetails(destination).setPostProcessor(style)

@@ -1,8 +1,10 @@
 """The Processing algorithms, one a module. Their ids, parameters and outputs are public and never renamed."""
 
 from .analyse_dem import AnalyseDem
+from .analyse_point_cloud import AnalysePointCloud
 from .detail_layers import DetailLayers
+from .extract_level import ExtractLevel
 from .reconstruct import Reconstruct
 
 #: In the order of the toolbox's groups.
-ALGORITHMS = (AnalyseDem, Reconstruct, DetailLayers)
+ALGORITHMS = (AnalyseDem, AnalysePointCloud, ExtractLevel, Reconstruct, DetailLayers)
