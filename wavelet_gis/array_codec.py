@@ -25,7 +25,7 @@ __all__ = ["ArrayHeader", "decode_array", "encode_array", "header_of"]
 #: Uncompressed bytes in a chunk, at most. Small enough to be undone in memory twice over.
 CHUNK_BYTES = 4 << 20
 
-#: zlib level: 1 took a third of the time of 6 for 3 % more bytes on pyramids of real DEMs.
+#: zlib level: on pyramids of real DEMs 6 took 1.1 to 5 times the time for 0.4 to 10 % fewer bytes.
 COMPRESSION_LEVEL = 1
 
 #: zlib cannot expand by more than this (1032:1, from its format), so larger claims are false.
@@ -71,7 +71,9 @@ class ArrayHeader:
         return -(-self.shape[0] // self.chunk_rows) if self.n_bytes else 0
 
     @classmethod
-    def checked(cls, dtype: object, shape: object, filter_name: object, chunk_rows: object):
+    def checked(
+        cls, dtype: object, shape: object, filter_name: object, chunk_rows: object
+    ) -> ArrayHeader:
         """Return a header from values that a stranger wrote.
 
         Raises

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from wavelet_gis.console import SCRATCH_PREFIX
 from wavelet_gis.errors import OutputFileError
 
 __all__ = ["check_output", "new_file"]
@@ -106,7 +107,7 @@ def new_file(path: str | os.PathLike[str], *, overwrite: bool = False) -> Iterat
 @contextmanager
 def _scratch_folder(target: Path) -> Iterator[Path]:
     try:
-        folder = tempfile.mkdtemp(prefix=".terrain-wavelets-", dir=target.parent)
+        folder = tempfile.mkdtemp(prefix=SCRATCH_PREFIX, dir=target.parent)
     except OSError as error:
         raise OutputFileError(
             f"{target.parent}: this folder cannot be written ({error.strerror}); "

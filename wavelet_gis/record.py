@@ -50,7 +50,7 @@ class PyramidRecord:
     source_name : str
         The input's file name.
     errors : tuple of LevelErrors, or None
-        Size and errors of each level, in the working frame, the finest first.
+        Size and errors of each level, the finest first, in the input's unit of z.
     history : tuple of str
         One line for each change since the analysis (filters).
     """
@@ -66,7 +66,15 @@ class PyramidRecord:
 
     def with_errors(self) -> PyramidRecord:
         """Return the record with the errors of every level computed."""
-        return replace(self, errors=tuple(level_errors(self.pyramid)))
+        unit = self.frame.z_scale
+        levels = (
+            level._replace(
+                rmse_surface=level.rmse_surface / unit,
+                max_error_surface=level.max_error_surface / unit,
+            )
+            for level in level_errors(self.pyramid)
+        )
+        return replace(self, errors=tuple(levels))
 
     def with_pyramid(self, pyramid: Pyramid, change: str) -> PyramidRecord:
         """Return the record of an altered pyramid, which no longer gives the exact input.

@@ -1,0 +1,48 @@
+"""Points and triangles as well-known binary, built by numpy for millions at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["points_wkb", "triangles_wkb"]
+
+_LITTLE_ENDIAN = 1
+_POINT_Z, _POLYGON_Z = 1001, 1003
+
+_POINT = np.dtype([("order", "u1"), ("type", "<u4"), ("xyz", "<f8", (3,))])
+_TRIANGLE = np.dtype(
+    [
+        ("order", "u1"),
+        ("type", "<u4"),
+        ("n_rings", "<u4"),
+        ("n_corners", "<u4"),
+        ("xyz", "<f8", (4, 3)),
+    ]
+)
+
+
+def points_wkb(vertices: NDArray[np.float64]) -> NDArray[Any]:
+    """Return ``(n,)`` bytes objects, a Point Z for each row of ``(n, 3)`` coordinates."""
+    records = np.empty(len(vertices), dtype=_POINT)
+    records["order"], records["type"] = _LITTLE_ENDIAN, _POINT_Z
+    records["xyz"] = vertices
+    return _as_bytes(records)
+
+
+def triangles_wkb(vertices: NDArray[np.float64], faces: NDArray[Any]) -> NDArray[Any]:
+    """Return ``(n,)`` bytes objects, a Polygon Z with a closed ring for each face."""
+    records = np.empty(len(faces), dtype=_TRIANGLE)
+    records["order"], records["type"] = _LITTLE_ENDIAN, _POLYGON_Z
+    records["n_rings"], records["n_corners"] = 1, 4
+    records["xyz"] = vertices[faces[:, [0, 1, 2, 0]]]
+    return _as_bytes(records)
+
+
+def _as_bytes(records: NDArray[Any]) -> NDArray[Any]:
+    packed = records.view(f"V{records.dtype.itemsize}").tolist()
+    objects = np.empty(len(packed), dtype=object)
+    objects[:] = packed
+    return objects
