@@ -33,6 +33,7 @@ class Console:
     def __init__(self, *, quiet: bool = False, as_json: bool = False) -> None:
         self._quiet = quiet
         self._as_json = as_json
+        self._held_warnings: list[str] = []
 
     def say(self, line: str) -> None:
         """Print a line for people."""
@@ -55,6 +56,7 @@ class Console:
     @contextmanager
     def progress(self, what: str) -> Iterator[Progress]:
         """A function that takes a fraction and moves a bar, which is seen on a terminal only."""
+        self._show_warnings()
         if self._quiet or not sys.stderr.isatty():
             yield lambda fraction: True
             return
@@ -71,7 +73,11 @@ class Console:
 
     @contextmanager
     def one_line_warnings(self) -> Iterator[None]:
-        """Show each warning as one line on standard error; none when quiet."""
+        """Show each warning as one line on standard error; none when quiet.
+
+        They are held until the long work begins or the command is done: input that is refused
+        gets one line, which says what is wrong, and no others beside it.
+        """
 
         def show(
             message: Warning | str,
@@ -81,9 +87,7 @@ class Console:
             file: TextIO | None = None,
             line: str | None = None,
         ) -> None:
-            if not self._quiet:
-                text = " ".join(str(message).split())
-                print(f"{PROGRAM}: warning: {text}", file=sys.stderr)
+            self._held_warnings.append(" ".join(str(message).split()))
 
         with warnings.catch_warnings():
             from wavelet_core.errors import SlowFallbackWarning
@@ -95,6 +99,13 @@ class Console:
             warnings.simplefilter("once", SlowFallbackWarning)
             warnings.showwarning = show
             yield
+        self._show_warnings()
+
+    def _show_warnings(self) -> None:
+        if not self._quiet:
+            for text in self._held_warnings:
+                print(f"{PROGRAM}: warning: {text}", file=sys.stderr)
+        self._held_warnings.clear()
 
 
 def _cell(value: object) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ __all__ = [
     "MAX_DISTORTION",
     "MAX_SPAN_DEGREES",
     "CoordinateSystem",
+    "Georeference",
     "LocalFrame",
     "metres_per_degree",
     "vertical_unit_name",
@@ -114,6 +115,22 @@ class CoordinateSystem:
         ):
             raise CrsError("the stored CRS is damaged (kind or numbers); write the file anew.")
         return system
+
+
+class Georeference(NamedTuple):
+    """What a file tells of its coordinates.
+
+    wkt : str or None
+        Of the CRS.
+    vertical_unit : str or None
+        Name of the unit of z where the file tells it outside the CRS.
+    fault : str
+        What is wrong with the file's CRS, where it has one that cannot be used.
+    """
+
+    wkt: str | None = None
+    vertical_unit: str | None = None
+    fault: str = ""
 
 
 @dataclass(frozen=True, slots=True)

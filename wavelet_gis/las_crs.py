@@ -1,11 +1,10 @@
-"""The CRS of a LAS file, out of its WKT and GeoTIFF records, broken ones told of."""
+"""The CRS of a LAS file, out of its WKT and GeoTIFF records."""
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING, Any
 
-from wavelet_gis.errors import CrsWarning
+from wavelet_gis.crs import Georeference
 
 if TYPE_CHECKING:
     from laspy import LasHeader
@@ -26,22 +25,15 @@ _EPSG_CODES = range(1024, 32767)
 _UNITS = {9001: "metre", 9002: "foot", 9003: "us_survey_foot"}
 
 
-def las_crs(name: str, header: LasHeader) -> tuple[str | None, str | None]:
-    """WKT of the CRS, and unit of z where a GeoTIFF key names it; None for what is not told.
+def las_crs(header: LasHeader) -> Georeference:
+    """The CRS of a LAS file and its unit of z, with what is wrong with them.
 
     The WKT record is preferred; where it is broken or empty, the GeoTIFF keys are tried.
 
     Parameters
     ----------
-    name : str
-        The file, for warnings.
     header : LasHeader
         As laspy read it.
-
-    Warns
-    -----
-    CrsWarning
-        When there is a CRS record and none of them can be understood.
     """
     records = [*header.vlrs, *(header.evlrs or [])]
     records = [r for r in records if r.user_id.strip() == "LASF_Projection"]
@@ -52,18 +44,11 @@ def las_crs(name: str, header: LasHeader) -> tuple[str | None, str | None]:
         if record.record_id == 2112:
             wkt = _text_of(record)
             if _is_understood(wkt, faults):
-                return wkt, unit
+                return Georeference(wkt, unit)
     crs = _from_keys(keys, faults)
     if crs is not None:
-        return crs.to_wkt(), unit
-    if faults:
-        warnings.warn(
-            f"{name}: the CRS in the file is broken ({faults[0]}) and is left out; give the "
-            "right one with --crs",
-            CrsWarning,
-            stacklevel=3,
-        )
-    return None, unit
+        return Georeference(crs.to_wkt(), unit)
+    return Georeference(None, unit, faults[0] if faults else "")
 
 
 def _text_of(record: Any) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core.errors import MissingDependencyError
+from wavelet_gis.crs import Georeference
 from wavelet_gis.errors import InputFileError, OutputFileError, PointCloudWarning
 from wavelet_gis.ground import GROUND_CLASS, height_above_ground
 from wavelet_gis.las_crs import las_crs
@@ -37,6 +38,9 @@ _ALIASES: dict[str, tuple[str, ...]] = {
 #: VLRs that describe how points were compressed or arranged, wrong in any file written anew.
 _STALE_VLRS = {("laszip encoded", 22204), ("copc", 1), ("copc", 1000)}
 
+#: Point formats with references to waveform packets.
+_WAVEFORM_FORMATS = (4, 5, 9, 10)
+
 #: Offset in the header of the day and year of creation.
 _CREATION_DATE = slice(90, 94)
 
@@ -47,10 +51,8 @@ def read_cloud(
     attributes: Sequence[str] = (),
     classes: Sequence[int] | None = None,
     carry: bool = True,
-) -> tuple[PointCloud, str | None, str | None]:
-    """The chosen points of a LAS or LAZ file, the WKT of its CRS, and the name of its unit of z.
-
-    The last two are None where the file does not tell.
+) -> tuple[PointCloud, Georeference]:
+    """The chosen points of a LAS or LAZ file, and what it tells of their coordinates.
 
     Parameters
     ----------
@@ -114,7 +116,8 @@ def read_cloud(
         n_in_file=len(array),
         classes=None if classes is None else tuple(int(c) for c in classes),
     )
-    return cloud, *las_crs(name, header)
+    _tell_of_waveforms(name, header)
+    return cloud, las_crs(header)
 
 
 def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
@@ -135,7 +138,9 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
     laspy = _laspy()
     header = _header_from(laspy, cloud.header)
     stored_date = bytes(cloud.header[_CREATION_DATE])
-    header.vlrs = [v for v in header.vlrs if (v.user_id, v.record_id) not in _STALE_VLRS]
+    # Taken out one by one: setting the list anew would make laspy rewrite the other records.
+    for stale in [v for v in header.vlrs if (v.user_id, v.record_id) in _STALE_VLRS]:
+        header.vlrs.remove(stale)
     computed = [a for a in cloud.attributes if a.dimension == HEIGHT_ABOVE_GROUND]
     for attribute in computed:
         if attribute.name not in header.point_format.dimension_names:
@@ -346,6 +351,16 @@ def _put(record: PackedPointRecord, attribute: PointAttribute) -> None:
         return
     largest = record.point_format.dimension_by_name(attribute.dimension).max or 0
     record[attribute.dimension] = np.minimum(attribute.values, largest)
+
+
+def _tell_of_waveforms(name: str, header: LasHeader) -> None:
+    if header.point_format.id in _WAVEFORM_FORMATS:
+        warnings.warn(
+            f"{name}: the points refer to waveforms; their references are carried, the waveform "
+            "samples themselves are not",
+            PointCloudWarning,
+            stacklevel=3,
+        )
 
 
 def _evlr_bytes(name: str, header: LasHeader) -> NDArray[np.uint8]:

@@ -408,15 +408,10 @@ def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, Poin
     Raises
     ------
     InputFileError
-        When there are fewer than three points, or a coordinate is not finite.
+        When a coordinate or an attribute is not finite.
     MeshError
-        When all points lie on one line.
+        When there are fewer than three points, or all lie on one line.
     """
-    if cloud.n_points < 3:
-        raise InputFileError(
-            f"the cloud has {_counted(cloud.n_points)}; a surface needs at least three "
-            "(check the file, and --classes if given)."
-        )
     vertices = frame.to_local(cloud.coordinates())
     if not np.isfinite(vertices).all():
         raise InputFileError(
@@ -473,10 +468,6 @@ def _attribute(described: dict[str, Any]) -> PointAttribute:
         scale=scale,
         offset=offset,
     )
-
-
-def _counted(n: int) -> str:
-    return {0: "no point", 1: "one point"}.get(n, f"{n} points")
 
 
 def _require(holds: bool, what: str) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_gis.crs import Georeference
 from wavelet_gis.dem import Dem, GridGeometry
 from wavelet_gis.errors import InputFileError, OutputFileError, RasterWarning
 
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from rasterio.io import DatasetReader, DatasetWriter
 
 __all__ = ["read_dem", "write_cog", "write_dem"]
-
-ReadDem = tuple[Dem, str | None, str | None]
 
 #: Creation options of GeoTIFF that are taken over from the file that was read.
 _GTIFF_OPTIONS = ("compress", "predictor", "tiled", "blockxsize", "blockysize", "bigtiff")
@@ -31,10 +30,8 @@ _LOSSLESS = {"lzw", "deflate", "packbits", "zstd", "lzma"}
 _DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid", ".img": "HFA", ".vrt": "VRT"}
 
 
-def read_dem(path: str | os.PathLike[str], *, band: int | None = None) -> ReadDem:
-    """One band of a raster, the WKT of its CRS, and the name of its unit of z.
-
-    The last two are None where the file does not tell.
+def read_dem(path: str | os.PathLike[str], *, band: int | None = None) -> tuple[Dem, Georeference]:
+    """One band of a raster, and what the file tells of its coordinates.
 
     Parameters
     ----------
@@ -155,7 +152,7 @@ def _require_file(path: str | os.PathLike[str]) -> None:
         raise InputFileError(f"{name}: there is no such file; check the path.")
 
 
-def _read_band(dataset: DatasetReader, path: Path, band: int | None) -> ReadDem:
+def _read_band(dataset: DatasetReader, path: Path, band: int | None) -> tuple[Dem, Georeference]:
     if dataset.count == 0:
         raise InputFileError(
             f"{path}: the file holds {len(dataset.subdatasets)} sub-datasets and no band of its "
@@ -195,7 +192,7 @@ def _read_band(dataset: DatasetReader, path: Path, band: int | None) -> ReadDem:
         profile=_profile(dataset, index),
     )
     wkt = dataset.crs.to_wkt() if dataset.crs else None
-    return dem, wkt, dataset.units[index - 1] or None
+    return dem, Georeference(wkt, dataset.units[index - 1] or None)
 
 
 def _nodata(dataset: DatasetReader, index: int) -> float | int | None:

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from wavelet_core import Pyramid, TriangleMesh
+from wavelet_core import MeshError, Pyramid, TriangleMesh
 from wavelet_gis.crs import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
 from wavelet_gis.dem import Dem, RasterSource, dem_mesh, grid_bounds
-from wavelet_gis.errors import CrsWarning, InputFileError, UnitWarning
+from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
 from wavelet_gis.points import PointCloud, PointSource, cloud_bounds, cloud_mesh
 from wavelet_gis.record import PyramidRecord
 
@@ -113,23 +113,21 @@ def open_terrain(
 
         if band is not None:
             raise InputFileError(f"{path}: a point cloud has no bands; leave --band out.")
-        with warnings.catch_warnings():
-            if override is not None:  # what is wrong with the file's own CRS is of no matter
-                warnings.simplefilter("ignore", CrsWarning)
-            cloud, wkt, unit = read_cloud(
-                path, attributes=attributes, classes=classes, carry=carry
-            )
-        system = override or coordinate_system(wkt)
-        return terrain_of_cloud(os.fspath(path), cloud, system, vertical_unit or unit)
+        cloud, place = read_cloud(path, attributes=attributes, classes=classes, carry=carry)
+        system = override or coordinate_system(place.wkt)
+        return terrain_of_cloud(
+            os.fspath(path), cloud, system, vertical_unit or place.vertical_unit, fault=place.fault
+        )
     from wavelet_gis.raster import read_dem
 
     if attributes or classes is not None:
         raise InputFileError(
             f"{path}: --attributes and --classes are for point clouds; leave them out for a raster."
         )
-    dem, wkt, unit = read_dem(path, band=band)
-    system = override or coordinate_system(wkt)
-    return terrain_of_dem(os.fspath(path), dem, system, vertical_unit or _known_unit(unit))
+    dem, place = read_dem(path, band=band)
+    system = override or coordinate_system(place.wkt)
+    unit = vertical_unit or _known_unit(place.vertical_unit)
+    return terrain_of_dem(os.fspath(path), dem, system, unit)
 
 
 def terrain_of_dem(
@@ -164,7 +162,12 @@ def terrain_of_dem(
 
 
 def terrain_of_cloud(
-    name: str, cloud: PointCloud, system: CoordinateSystem, vertical_unit: str | None = None
+    name: str,
+    cloud: PointCloud,
+    system: CoordinateSystem,
+    vertical_unit: str | None = None,
+    *,
+    fault: str = "",
 ) -> Terrain:
     """The terrain of a point cloud that is in memory already.
 
@@ -178,9 +181,19 @@ def terrain_of_cloud(
         Their CRS.
     vertical_unit : str, optional
         Unit of z; see `wavelet_gis.crs.working_frame` for what holds without it.
+    fault : str
+        Why there is no CRS, for the warning.
     """
-    frame, unit = _frame(name, system, cloud_bounds(cloud), vertical_unit)
-    mesh, source = cloud_mesh(cloud, frame)
+    if cloud.n_points < 3:
+        raise InputFileError(
+            f"{name}: the cloud has {cloud.n_points} point{'s' * (cloud.n_points != 1)}; a "
+            "surface needs at least three (check the file, and --classes if given)."
+        )
+    frame, unit = _frame(name, system, cloud_bounds(cloud), vertical_unit, fault)
+    try:
+        mesh, source = cloud_mesh(cloud, frame)
+    except (MeshError, InputFileError) as error:
+        raise InputFileError(f"{name}: {error}") from error
     return Terrain(name, mesh, cloud, source, system, frame, unit)
 
 
@@ -189,10 +202,15 @@ def _frame(
     system: CoordinateSystem,
     bounds: tuple[float, float, float, float],
     vertical_unit: str | None,
+    fault: str = "",
 ) -> tuple[LocalFrame, str]:
-    frame = working_frame(system, bounds, vertical_unit)
+    try:
+        frame = working_frame(system, bounds, vertical_unit)
+    except CrsError as error:
+        raise CrsError(f"{name}: {error}") from error
     if system.wkt is None:
-        _warn(f"{name}: there is no CRS; x, y and z are taken as they are (give one with --crs)")
+        what = f"the CRS is broken ({fault})" if fault else "there is no CRS"
+        _warn(f"{name}: {what}; x, y and z are taken as they are (give one with --crs)")
     elif system.kind == "unknown":
         _warn(
             f"{name}: the CRS {system.name!r} is neither geographic nor projected; x, y and z are "
@@ -219,8 +237,6 @@ def _warn(message: str) -> None:
 
 def _known_unit(unit: str | None) -> str | None:
     """The unit that a raster band names, if it is a length that we know."""
-    from wavelet_gis.errors import CrsError
-
     try:
         return vertical_unit_name(unit) if unit else None
     except CrsError:
