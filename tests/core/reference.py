@@ -318,7 +318,7 @@ class Quadrics:
             d = point - origin
             d = d - (d @ e1) * e1 - (d @ e2) * e2
             total += weight * (d @ d)
-        return total
+        return total if total > 1e-14 else 0.0  # else rounding would tell equal targets apart
 
     def redistributed(self, odd: list[int], even: list[int], p: np.ndarray) -> Quadrics:
         """Return the even vertices' quadrics after the odd ones passed theirs on (Eqs. 52-53)."""

@@ -9,6 +9,9 @@ from .quadric import evaluate
 UNMARKED = 0
 EVEN = 1
 ODD = 2
+# squared distances, in normalised units, that are nothing but rounding; without the cut, targets
+# whose planes all hold the vertex would be told apart by noise, and not by index
+ROUNDING = 1e-14
 
 
 # order (n_candidates,) int64: vertices by ascending cost; points (n, d) float64;
@@ -46,6 +49,8 @@ def label(
             may_update = may_update or not locked[neighbour]
             if quadrics.shape[0] > 0:
                 error = evaluate(quadrics[neighbour], points[v])
+                if error < ROUNDING:
+                    error = 0.0
             else:
                 error = 0.0
                 for i in range(points.shape[1]):
