@@ -1,1 +1,1 @@
-"""The QGIS plugin: the only place that imports qgis or osgeo. It translates layers to arrays and back."""
+"""The QGIS plugin, the only place that imports qgis or osgeo: layers to arrays and back."""

@@ -1,4 +1,4 @@
-"""What all algorithms share: help text, dependency check, and errors turned into QGIS's at one place."""
+"""What all algorithms share: help, the check of packages, and errors turned into QGIS's."""
 
 from __future__ import annotations
 
@@ -75,7 +75,9 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         if helped:
             lines.append(f"<h3>{self.tr('Parameters')}</h3>")
         lines += [f"<p><b>{html.escape(p.description())}</b><br>{p.help()}</p>" for p in helped]
-        numbers = [o for o in self.outputDefinitions() if o.type() in ("outputNumber", "outputString")]
+        numbers = [
+            o for o in self.outputDefinitions() if o.type() in ("outputNumber", "outputString")
+        ]
         if numbers:
             lines.append(f"<h3>{self.tr('Also returned')}</h3><ul>")
             lines += [f"<li>{html.escape(o.description())} ({o.name()})</li>" for o in numbers]
@@ -90,7 +92,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         self.addParameter(parameter)
 
     def canExecute(self):
-        """Return True always: what is missing is told when the algorithm is run, with the remedy."""
+        """Return True always; what is missing is told, with the remedy, when it is run."""
         return True, ""
 
     def packages(self, parameters, context):

@@ -1,4 +1,4 @@
-"""Which packages are missing, and how to get them on this machine. Nothing is installed from here."""
+"""Which packages are missing, and how to get them on this machine; nothing installs itself."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MINIMUM_PYTHON = (3, 11)
 
 @dataclass(frozen=True)
 class Package:
-    """A Python package by its import name, its name for pip, and its Debian package if there is one."""
+    """A package by its import name, its name for pip, and its Debian package where there is one."""
 
     module: str
     pip: str

@@ -33,15 +33,37 @@ def choice(name, description, values, default=None):
 
 
 def add_design_parameters(algorithm) -> None:
-    """Declare LEVELS, PARTITION, PREDICTION, UPDATE, SIGNAL, BENDING_WEIGHT and VERTICAL_UNIT."""
+    """Declare the levels, the stop rules, the design of the wavelets and the vertical unit."""
     algorithm.add(
         QgsProcessingParameterNumber(
-            "LEVELS", tr("Most levels"), INTEGER, 12, optional=False, minValue=1, maxValue=1000
+            "LEVELS", tr("Most levels"), INTEGER, None, optional=True, minValue=1, maxValue=1000
         ),
         tr(
             "How many steps of analysis at most (the paper's L). Each removes about a quarter of "
-            "the vertices, so 12 levels leave some 2 %. Fewer come out where nothing more can go."
+            "the vertices, so 12 levels leave some 2 %. Fewer come out where nothing more can go. "
+            "Empty for 12, or, with a rule below, for as many as that takes."
         ),
+    )
+    algorithm.add(
+        QgsProcessingParameterNumber(
+            "TARGET_VERTICES", tr("Stop at this number of vertices"), INTEGER, None, True, 1
+        ),
+        tr("The coarsest level has exactly so many vertices, if it can get there."),
+        advanced=True,
+    )
+    algorithm.add(
+        QgsProcessingParameterNumber(
+            "MAX_ERROR", tr("Stop at this largest error"), DOUBLE, None, True, 0.0
+        ),
+        tr(
+            "No input point is farther above or below the coarsest level, in the unit of elevation."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
+        QgsProcessingParameterNumber("MAX_RMS", tr("Stop at this RMSE"), DOUBLE, None, True, 0.0),
+        tr("The same for the root mean square over all input points, in the unit of elevation."),
+        advanced=True,
     )
     algorithm.add(
         choice("PARTITION", tr("Partition"), PARTITIONS),
@@ -104,10 +126,27 @@ def vertical_unit(algorithm, parameters, context):
     return None if unit in ("", VERTICAL_UNITS[0]) else unit
 
 
-def design_options(algorithm, parameters, context) -> dict:
-    """Return the options of ``wavelet_core.analyse`` that the parameters say."""
+def design_options(algorithm, parameters, context, z_scale: float) -> dict:
+    """Return the options of ``wavelet_core.analyse`` that the parameters say.
+
+    Parameters
+    ----------
+    algorithm : QgsProcessingAlgorithm
+    parameters : dict
+    context : QgsProcessingContext
+    z_scale : float
+        Working units in one unit of elevation.
+    """
+
+    def number(name, read, factor=1):
+        is_given = parameters.get(name) is not None
+        return read(parameters, name, context) * factor if is_given else None
+
     return {
-        "levels": algorithm.parameterAsInt(parameters, "LEVELS", context),
+        "levels": number("LEVELS", algorithm.parameterAsInt),
+        "target_vertices": number("TARGET_VERTICES", algorithm.parameterAsInt),
+        "max_error": number("MAX_ERROR", algorithm.parameterAsDouble, z_scale),
+        "max_rms": number("MAX_RMS", algorithm.parameterAsDouble, z_scale),
         "partition": algorithm.parameterAsString(parameters, "PARTITION", context),
         "prediction": algorithm.parameterAsString(parameters, "PREDICTION", context),
         "update": algorithm.parameterAsString(parameters, "UPDATE", context),

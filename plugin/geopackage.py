@@ -93,7 +93,7 @@ def _insert(path, layer, feedback) -> None:
             blobs = [header + wkb for wkb in layer.geometry[start:stop]]
             connection.executemany(
                 f'INSERT INTO "{layer.name}" ({names}) VALUES ({marks})',
-                zip(blobs, *(column[start:stop] for column in columns)),
+                zip(blobs, *(column[start:stop] for column in columns), strict=True),
             )
         if len(layer.geometry):
             connection.execute(
@@ -114,7 +114,9 @@ def _index(path, layer) -> None:
 
 def _bounds(layer):
     """Return the smallest and largest x and y in the geometries, read out of their bytes."""
-    joined = np.frombuffer(b"".join(layer.geometry.tolist()), np.uint8).reshape(len(layer.geometry), -1)
+    joined = np.frombuffer(b"".join(layer.geometry.tolist()), np.uint8).reshape(
+        len(layer.geometry), -1
+    )
     start = 5 if layer.geometry_type == "Point Z" else 13
     xyz = np.ascontiguousarray(joined[:, start:]).view("<f8").reshape(-1, 3)
     (x_min, y_min, _), (x_max, y_max, _) = xyz.min(axis=0), xyz.max(axis=0)

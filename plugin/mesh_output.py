@@ -6,64 +6,39 @@ import os
 
 from qgis.core import (
     QgsProcessingContext,
-    QgsProcessingException,
     QgsProcessingUtils,
 )
 
 from . import styles
 from .pyramids import crs_of
-from .translation import tr
-
-#: Stands for no data in rasters that are made here.
-NODATA = -9999.0
 
 
-def write_raster(algorithm, parameters, name, context, record, surface, feedback) -> str:
-    """Write the surface, in the CRS of the input, as a raster and return its path.
+def write_raster(algorithm, parameters, name, context, record, mesh, feedback) -> str:
+    """Write a mesh of the record (in the working frame) as a raster and return its path.
 
-    The grid is that of the DEM the record came from, or, with CELL_SIZE, one over the surface.
+    The grid is that of the DEM the record came from, or, with CELL_SIZE, one over the mesh.
     """
-    import numpy as np
-    from wavelet_gis.dem import Dem
-    from wavelet_gis.rasterise import rasterise
+    from wavelet_gis.surface import surface_dem
 
     from .rasters import write_dem
 
     path = algorithm.parameterAsOutputLayer(parameters, name, context)
-    geometry = _geometry(algorithm, parameters, context, record, surface)
-    values = rasterise(surface, geometry)
-    valid = np.isfinite(values)
-    values[~valid] = NODATA
-    dem = Dem(values.astype(np.float32), valid, geometry, NODATA)
-    write_dem(path, dem, crs_of(record), feedback)
+    cell_size = None
+    if parameters.get("CELL_SIZE") is not None:
+        cell_size = algorithm.parameterAsDouble(parameters, "CELL_SIZE", context) or None
+    write_dem(path, surface_dem(record, mesh, cell_size=cell_size), crs_of(record), feedback)
     styles.style_output(context, path, styles.HILLSHADE)
     return path
 
 
-def _geometry(algorithm, parameters, context, record, surface):
-    from wavelet_gis.rasterise import geometry_over
-
-    cell_size = 0.0
-    if parameters.get("CELL_SIZE") is not None:
-        cell_size = algorithm.parameterAsDouble(parameters, "CELL_SIZE", context)
-    if cell_size == 0.0 and record.source.kind == "raster":
-        return record.source.geometry
-    if cell_size == 0.0:
-        raise QgsProcessingException(
-            tr("A raster of a pyramid that was made from points needs a cell size; give one.")
-        )
-    low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
-    return geometry_over((low[0], low[1], high[0], high[1]), cell_size)
-
-
-def write_mesh_file(algorithm, parameters, name, context, record, surface) -> str:
-    """Write the surface as a mesh file; a 2DM opens as a mesh layer where a project is at hand."""
+def write_mesh_file(algorithm, parameters, name, context, record, mesh) -> str:
+    """Write a mesh of the record as a mesh file; a 2DM opens as a layer if there is a project."""
     from wavelet_gis.atomic import new_file
     from wavelet_gis.meshfiles import write_mesh
 
     path = algorithm.parameterAsFileOutput(parameters, name, context)
     with new_file(path, overwrite=True) as scratch:
-        write_mesh(scratch, surface, record.system.wkt)
+        write_mesh(scratch, record.file_mesh(mesh), record.system.wkt)
     if path.lower().endswith(".2dm") and context.project() is not None:
         details = QgsProcessingContext.LayerDetails(
             os.path.splitext(os.path.basename(path))[0],

@@ -1,8 +1,8 @@
 """Make the plugin folder's own ``wavelet_core`` and ``wavelet_gis`` importable by those names.
 
-The two packages are also published on their own, so they import themselves and each other by their
-plain names. Putting the plugin folder on ``sys.path`` would expose ``plugin`` and everything else in
-it to all of QGIS; a finder for just these two names does not.
+The two packages are also published on their own, so they import each other by their plain names.
+Putting the plugin folder on ``sys.path`` would expose ``plugin`` and all else in it to the whole of
+QGIS; a finder for just these two names does not.
 """
 
 from __future__ import annotations

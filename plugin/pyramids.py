@@ -72,8 +72,14 @@ def add_figure_outputs(algorithm) -> None:
         ("N_FACES", tr("Triangles of the input")),
         ("COARSE_VERTICES", tr("Vertices of the coarsest level")),
         ("COARSE_FACES", tr("Triangles of the coarsest level")),
-        ("RMSE_SURFACE", tr("RMSE of the coarsest surface at all input points, in the unit of elevation")),
-        ("MAX_ERROR_SURFACE", tr("Largest error of the coarsest surface, in the unit of elevation")),
+        (
+            "RMSE_SURFACE",
+            tr("RMSE of the coarsest surface at all input points, in the unit of elevation"),
+        ),
+        (
+            "MAX_ERROR_SURFACE",
+            tr("Largest error of the coarsest surface, in the unit of elevation"),
+        ),
         ("RMSE_COEFFICIENTS", tr("RMSE of the coefficients at the coarsest level (no unit)")),
     ):
         algorithm.addOutput(QgsProcessingOutputNumber(name, description))
@@ -82,15 +88,14 @@ def add_figure_outputs(algorithm) -> None:
 def figures(record) -> dict:
     """Return sizes and errors of a record whose errors have been computed."""
     finest, coarsest = record.errors[0], record.errors[-1]
-    scale = record.frame.z_scale
     return {
         "N_LEVELS": record.pyramid.n_levels,
         "N_VERTICES": finest.n_vertices,
         "N_FACES": finest.n_faces,
         "COARSE_VERTICES": coarsest.n_vertices,
         "COARSE_FACES": coarsest.n_faces,
-        "RMSE_SURFACE": coarsest.rmse_surface / scale,
-        "MAX_ERROR_SURFACE": coarsest.max_error_surface / scale,
+        "RMSE_SURFACE": coarsest.rmse_surface,
+        "MAX_ERROR_SURFACE": coarsest.max_error_surface,
         "RMSE_COEFFICIENTS": coarsest.rmse_coefficients,
     }
 
@@ -100,20 +105,19 @@ def level_figures(record, level: int) -> dict:
     for errors in record.errors or ():
         if errors.level == level:
             return {
-                "RMSE_SURFACE": errors.rmse_surface / record.frame.z_scale,
-                "MAX_ERROR_SURFACE": errors.max_error_surface / record.frame.z_scale,
+                "RMSE_SURFACE": errors.rmse_surface,
+                "MAX_ERROR_SURFACE": errors.max_error_surface,
             }
     return {}
 
 
 def log_levels(record, feedback) -> None:
     """Write the table of levels to the log."""
-    scale = record.frame.z_scale
     feedback.pushInfo(tr("level   vertices  triangles  RMSE of surface  largest error"))
     for errors in record.errors:
         feedback.pushInfo(
             f"{errors.level:5d} {errors.n_vertices:10d} {errors.n_faces:10d} "
-            f"{errors.rmse_surface / scale:16.4f} {errors.max_error_surface / scale:14.4f}"
+            f"{errors.rmse_surface:16.4f} {errors.max_error_surface:14.4f}"
         )
 
 

@@ -104,7 +104,8 @@ class RasterInput:
             crs=layer.crs(),
             path=provider.dataSourceUri() if is_gdal else None,
             provider=provider.clone(),
-            uses_nodata=not provider.sourceHasNoDataValue(band) or provider.useSourceNoDataValue(band),
+            uses_nodata=not provider.sourceHasNoDataValue(band)
+            or provider.useSourceNoDataValue(band),
             hidden=hidden,
         )
 
@@ -250,9 +251,9 @@ def write_dem(path: str, dem, crs, feedback) -> None:
         gdal_type = _GDAL_TYPES.get(dem.values.dtype.newbyteorder("<").str)
         if last is None or gdal_type is None:
             raise QgsProcessingException(
-                tr("{}: no raster of {} can be written under this name; use one ending in .tif.").format(
-                    path, dem.values.dtype
-                )
+                tr(
+                    "{}: no raster of {} can be written under this name; use one ending in .tif."
+                ).format(path, dem.values.dtype)
             )
         n_rows, n_columns = dem.geometry.shape
         name = str(scratch) if first is last or driver_name == "GTiff" else ""
@@ -265,9 +266,9 @@ def write_dem(path: str, dem, crs, feedback) -> None:
         dataset = None  # closes the file
         if not is_written:
             raise QgsProcessingException(
-                tr("{}: GDAL could not write this raster ({}); check the disk and the name.").format(
-                    path, gdal.GetLastErrorMsg()
-                )
+                tr(
+                    "{}: GDAL could not write this raster ({}); check the disk and the name."
+                ).format(path, gdal.GetLastErrorMsg())
             )
 
 
@@ -327,7 +328,7 @@ def _as_stored(nodata, dtype):
 
 
 def _profile(dataset, band) -> dict:
-    """Return what the writer may take over, as JSON-able values named as in ``wavelet_gis.raster``."""
+    """Return what the writer may take over, JSON-able, named as in ``wavelet_gis.raster``."""
     structure = dataset.GetMetadata("IMAGE_STRUCTURE")
     options = {}
     compression = structure.get("COMPRESSION", "")

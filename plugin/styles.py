@@ -33,6 +33,7 @@ class _Style(QgsProcessingLayerPostProcessorInterface):
 def style_tin(layer) -> None:
     """Colour the faces by elevation, with hair-thin edges, as in a pyramid file."""
     import numpy as np
+
     from wavelet_gis.styles import tin_style
 
     values, is_found = QgsVectorLayerUtils.getValues(layer, "elevation")
@@ -46,6 +47,7 @@ def style_details(layer) -> None:
     Each level looks as its own layer does in a pyramid file.
     """
     import numpy as np
+
     from wavelet_gis.styles import detail_style
 
     values, _ = QgsVectorLayerUtils.getValues(layer, "magnitude")

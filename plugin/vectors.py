@@ -89,7 +89,9 @@ def read_triangles(source, feedback) -> np.ndarray:
     """
     if not QgsWkbTypes.hasZ(source.wkbType()):
         raise QgsProcessingException(
-            tr("{}: the triangles have no Z, so they hold no elevations.").format(source.sourceName())
+            tr("{}: the triangles have no Z, so they hold no elevations.").format(
+                source.sourceName()
+            )
         )
     corners = []
     for feature in _features(source, feedback):
@@ -104,30 +106,6 @@ def read_triangles(source, feedback) -> np.ndarray:
                 )
             corners.append([(p.x(), p.y(), p.z()) for p in ring.points()[:3]])
     return np.array(corners, dtype=np.float64).reshape(len(corners), 3, 3)
-
-
-def read_lines(source, transform, feedback) -> list[np.ndarray]:
-    """Return every line (or ring) as an ``(n, 3)`` array; z is NaN where the layer has none.
-
-    Parameters
-    ----------
-    source : QgsProcessingFeatureSource
-    transform : QgsCoordinateTransform or None
-        To the CRS that the lines are wanted in.
-    """
-    lines = []
-    for feature in _features(source, feedback):
-        geometry = feature.geometry()
-        if transform is not None:
-            geometry.transform(transform)
-        for part in geometry.constParts():
-            curves = [part]
-            if hasattr(part, "exteriorRing"):
-                curves = [part.exteriorRing()]
-                curves += [part.interiorRing(k) for k in range(part.numInteriorRings())]
-            for curve in curves:
-                lines.append(np.array([(p.x(), p.y(), p.z()) for p in curve.vertices()]))
-    return lines
 
 
 def fields_of(layer) -> QgsFields:

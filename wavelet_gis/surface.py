@@ -20,7 +20,7 @@ def surface_dem(
     cell_size: float | None = None,
     attribute: str | None = None,
 ) -> Dem:
-    """The values of a mesh of the pyramid at the cell centres of a grid.
+    """Return the values of a mesh of the pyramid at the cell centres of a grid.
 
     Parameters
     ----------

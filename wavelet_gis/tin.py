@@ -16,7 +16,13 @@ from wavelet_core.triangulation import delaunay_faces, merge_duplicates
 from wavelet_gis.crs import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
 from wavelet_gis.record import MeshSource, PyramidRecord
 
-__all__ = ["ConstrainedTin", "TinTerrain", "mesh_of_corners", "terrain_of_tin", "tin_with_lines"]
+__all__ = [
+    "ConstrainedTin",
+    "TinTerrain",
+    "frame_of_coordinates",
+    "mesh_of_corners",
+    "tin_with_lines",
+]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -46,7 +52,7 @@ def tin_with_lines(
     contains: Callable[[FloatArray], BoolArray] | None = None,
     is_marked: BoolArray | None = None,
 ) -> ConstrainedTin:
-    """The Delaunay TIN of points in which breaklines and an outline are edges.
+    """Return the Delaunay TIN of points in which breaklines and an outline are edges.
 
     Parameters
     ----------
@@ -108,7 +114,7 @@ def tin_with_lines(
 
 
 def mesh_of_corners(corners: FloatArray) -> TriangleMesh:
-    """The mesh of triangles that were given one by one; equal corners become one vertex.
+    """Return the mesh of triangles given one by one; equal corners become one vertex.
 
     Parameters
     ----------
@@ -165,34 +171,33 @@ class TinTerrain(NamedTuple):
         )
 
 
-def terrain_of_tin(
-    name: str, mesh: TriangleMesh, system: CoordinateSystem, vertical_unit: str | None = None
-) -> TinTerrain:
-    """The terrain of a TIN that is in memory already.
+def frame_of_coordinates(
+    coordinates: FloatArray, system: CoordinateSystem, vertical_unit: str | None = None
+) -> tuple[LocalFrame, str]:
+    """Return the working frame over coordinates in a CRS, and the name of their unit of z.
 
     Parameters
     ----------
-    name : str
-        For messages and metadata.
-    mesh : TriangleMesh
-        In the coordinates of the CRS.
+    coordinates : ndarray, shape (n, 3)
+        In the CRS.
     system : CoordinateSystem
         The CRS.
     vertical_unit : str, optional
         Unit of z; see `wavelet_gis.crs.working_frame` for what holds without it.
+
+    Raises
+    ------
+    MeshError
+        When there is not one point.
     """
-    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    if len(coordinates) == 0:
+        raise MeshError("there is not one point; check the layer, its filter and its selection.")
+    low, high = coordinates.min(axis=0), coordinates.max(axis=0)
     frame = working_frame(system, (low[0], low[1], high[0], high[1]), vertical_unit)
     unit = vertical_unit or system.vertical_unit
     if unit is None:
-        unit = "metre" if system.kind == "geographic" else "unit of x and y"
-    else:
-        unit = vertical_unit_name(unit)
-    if not frame.is_identity:
-        mesh = TriangleMesh(
-            frame.to_local(mesh.vertices), mesh.faces, mesh.attributes, mesh.attribute_names
-        )
-    return TinTerrain(name, mesh, system, frame, unit)
+        return frame, "metre" if system.kind == "geographic" else "unit of x and y"
+    return frame, vertical_unit_name(unit)
 
 
 def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:
@@ -216,7 +221,6 @@ def _merged_by_line(vertices: FloatArray, n_points: int):
     ranked = vertices.copy()
     # merge_duplicates keeps the lowest, so lines are put below all points.
     ranked[n_points:, 2] = vertices[:, 2].min(initial=0.0) - 1.0
-    ranked[:n_points, 2] = np.maximum(vertices[:n_points, 2], ranked[:, 2].min(initial=0.0))
     return merge_duplicates(ranked)
 
 
@@ -245,7 +249,9 @@ def _inside(
     keep = np.ones(len(faces), dtype=bool)
     keep[doubtful] = contains(centres)
     if not keep.any():
-        raise MeshError("nothing of the terrain is inside the clip polygon; give one that overlaps.")
+        raise MeshError(
+            "nothing of the terrain is inside the clip polygon; give one that overlaps."
+        )
     return faces[keep]
 
 

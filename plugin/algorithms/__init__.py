@@ -1,10 +1,14 @@
-"""The Processing algorithms, one a module. Their ids, parameters and outputs are public and never renamed."""
+"""The Processing algorithms, one a module.
+
+Their ids, parameters and outputs are public: models and scripts store them. None is ever renamed.
+"""
 
 from .analyse_dem import AnalyseDem
 from .analyse_point_cloud import AnalysePointCloud
+from .analyse_tin import AnalyseTin
 from .detail_layers import DetailLayers
 from .extract_level import ExtractLevel
 from .reconstruct import Reconstruct
 
 #: In the order of the toolbox's groups.
-ALGORITHMS = (AnalyseDem, AnalysePointCloud, ExtractLevel, Reconstruct, DetailLayers)
+ALGORITHMS = (AnalyseDem, AnalysePointCloud, AnalyseTin, ExtractLevel, Reconstruct, DetailLayers)

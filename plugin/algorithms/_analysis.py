@@ -57,13 +57,17 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         output = self.parameterAsFileOutput(parameters, "OUTPUT", context)
         terrain = self.terrain(parameters, context, feedback)
         feedback.pushInfo(
-            self.tr("{} vertices, {} triangles").format(terrain.mesh.n_vertices, terrain.mesh.n_faces)
+            self.tr("{} vertices, {} triangles").format(
+                terrain.mesh.n_vertices, terrain.mesh.n_faces
+            )
         )
-        feedback.setProgressText(self.tr("Analysing (the first run also compiles, up to half a minute)"))
+        feedback.setProgressText(
+            self.tr("Analysing (the first run also compiles, up to half a minute)")
+        )
         pyramid = analyse(
             terrain.mesh,
             progress=progress(feedback, 0.05, 0.55),
-            **design_options(self, parameters, context),
+            **design_options(self, parameters, context, terrain.frame.z_scale),
             **self.more_options(parameters, context, terrain),
         )
         feedback.setProgressText(self.tr("Measuring the errors of every level"))

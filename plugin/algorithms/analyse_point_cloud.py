@@ -34,7 +34,9 @@ class AnalysePointCloud(AnalysisAlgorithm):
 
     def tags(self):
         """Return the words under which the toolbox finds it."""
-        return self.tr("las,laz,copc,lidar,point cloud,tin,pyramid,wavelet,multiresolution").split(",")
+        return self.tr("las,laz,copc,lidar,point cloud,tin,pyramid,wavelet,multiresolution").split(
+            ","
+        )
 
     def about(self):
         """Return what it does."""
@@ -53,7 +55,9 @@ class AnalysePointCloud(AnalysisAlgorithm):
                 self.tr("Point cloud file"),
                 fileFilter=self.tr("LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)"),
             ),
-            self.tr("Read with the Python package laspy, so no point cloud support in QGIS is needed."),
+            self.tr(
+                "Read with the Python package laspy, so no point cloud support in QGIS is needed."
+            ),
         )
         self.add(
             QgsProcessingParameterEnum(
@@ -106,7 +110,9 @@ class AnalysePointCloud(AnalysisAlgorithm):
             return is_fine, message
         path = self.parameterAsFile(parameters, "INPUT", context)
         if not os.path.isfile(path):
-            return False, self.tr("{}: there is no such file; choose a LAS or LAZ file.").format(path)
+            return False, self.tr("{}: there is no such file; choose a LAS or LAZ file.").format(
+                path
+            )
         try:
             self._classes(parameters, context)
         except ValueError:
@@ -121,6 +127,7 @@ class AnalysePointCloud(AnalysisAlgorithm):
     def terrain(self, parameters, context, feedback):
         """Return the terrain in the file."""
         from qgis.core import QgsCoordinateReferenceSystem
+
         from wavelet_gis.pointcloud import read_cloud
         from wavelet_gis.terrain import terrain_of_cloud
 
@@ -140,7 +147,9 @@ class AnalysePointCloud(AnalysisAlgorithm):
             crs = QgsCoordinateReferenceSystem.fromWkt(wkt)
             if not crs.isValid():
                 raise QgsProcessingException(
-                    self.tr("{}: QGIS does not understand the CRS in the file; choose one.").format(path)
+                    self.tr("{}: QGIS does not understand the CRS in the file; choose one.").format(
+                        path
+                    )
                 )
         feedback.setProgressText(self.tr("Triangulating {} points").format(cloud.n_points))
         return terrain_of_cloud(

@@ -29,7 +29,9 @@ class DetailLayers(PyramidAlgorithm):
 
     def tags(self):
         """Return the words under which the toolbox finds it."""
-        return self.tr("wavelet coefficients,detail,scale,vertex-frequency,points,pyramid").split(",")
+        return self.tr("wavelet coefficients,detail,scale,vertex-frequency,points,pyramid").split(
+            ","
+        )
 
     def about(self):
         """Return what it does."""
@@ -80,6 +82,7 @@ class DetailLayers(PyramidAlgorithm):
     def work(self, parameters, context, feedback):
         """Walk the levels from coarse to fine and add their points."""
         import numpy as np
+
         from wavelet_gis.layers import detail_layers
 
         from .. import styles, vectors
@@ -89,16 +92,18 @@ class DetailLayers(PyramidAlgorithm):
         record = self.record(parameters, context, feedback)
         n_levels = record.pyramid.n_levels
         if n_levels == 0:
-            raise QgsProcessingException(self.tr("This pyramid has no level, so it has no details."))
+            raise QgsProcessingException(
+                self.tr("This pyramid has no level, so it has no details.")
+            )
         first = checked_level(record, self.parameterAsInt(parameters, "FIRST_LEVEL", context))
         last = n_levels - 1
         if parameters.get("LAST_LEVEL") is not None:
             last = min(self.parameterAsInt(parameters, "LAST_LEVEL", context), last)
         if first > last:
             raise QgsProcessingException(
-                self.tr("The coarsest level, {}, is finer than the finest, {}; exchange them.").format(
-                    first, last
-                )
+                self.tr(
+                    "The coarsest level, {}, is finer than the finest, {}; exchange them."
+                ).format(first, last)
             )
         smallest = self.parameterAsDouble(parameters, "MIN_MAGNITUDE", context)
         sink, destination = None, None

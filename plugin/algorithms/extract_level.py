@@ -31,7 +31,9 @@ class ExtractLevel(PyramidAlgorithm):
 
     def tags(self):
         """Return the words under which the toolbox finds it."""
-        return self.tr("tin,mesh,2dm,raster,level of detail,generalise,coarse,wavelet,pyramid").split(",")
+        return self.tr(
+            "tin,mesh,2dm,raster,level of detail,generalise,coarse,wavelet,pyramid"
+        ).split(",")
 
     def about(self):
         """Return what it does."""
@@ -50,11 +52,16 @@ class ExtractLevel(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterNumber(
-                "CELL_SIZE", self.tr("Cell size of the raster"), DOUBLE, None, optional=True, minValue=0.0
+                "CELL_SIZE",
+                self.tr("Cell size of the raster"),
+                DOUBLE,
+                None,
+                optional=True,
+                minValue=0.0,
             ),
             self.tr(
                 "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
-                "from; a pyramid of points needs one if a raster is wanted."
+                "from, and for points the mean spacing of the level's vertices."
             ),
             advanced=True,
         )
@@ -103,7 +110,8 @@ class ExtractLevel(PyramidAlgorithm):
         )
         self.addOutput(
             QgsProcessingOutputNumber(
-                "MAX_ERROR_SURFACE", self.tr("Largest error of the surface, in the unit of elevation")
+                "MAX_ERROR_SURFACE",
+                self.tr("Largest error of the surface, in the unit of elevation"),
             )
         )
 
@@ -117,12 +125,12 @@ class ExtractLevel(PyramidAlgorithm):
         level = checked_level(record, self.parameterAsInt(parameters, "LEVEL", context))
         feedback.setProgress(30)
         feedback.setProgressText(self.tr("Synthesising level {}").format(level))
-        surface = record.file_mesh(record.pyramid.mesh(level))
+        mesh = record.pyramid.mesh(level)
         require_running(feedback)
         feedback.setProgress(60)
         results = {
-            "N_VERTICES": surface.n_vertices,
-            "N_FACES": surface.n_faces,
+            "N_VERTICES": mesh.n_vertices,
+            "N_FACES": mesh.n_faces,
             **level_figures(record, level),
         }
         n_figures = len(results)
@@ -136,11 +144,11 @@ class ExtractLevel(PyramidAlgorithm):
             )
         if parameters.get("RASTER"):
             results["RASTER"] = mesh_output.write_raster(
-                self, parameters, "RASTER", context, record, surface, feedback
+                self, parameters, "RASTER", context, record, mesh, feedback
             )
         if parameters.get("MESH"):
             results["MESH"] = mesh_output.write_mesh_file(
-                self, parameters, "MESH", context, record, surface
+                self, parameters, "MESH", context, record, mesh
             )
         if len(results) == n_figures:
             raise QgsProcessingException(

@@ -73,7 +73,7 @@ class Reconstruct(PyramidAlgorithm):
         )
         self.addOutput(QgsProcessingOutputNumber("N_VERTICES", self.tr("Number of vertices")))
         self.addOutput(
-            QgsProcessingOutputString("EXACT", self.tr("'yes' if it is the original, bit for bit"))
+            QgsProcessingOutputString("EXACT", self.tr("'yes' if bit for bit the original"))
         )
 
     def packages(self, parameters, context):
@@ -95,7 +95,7 @@ class Reconstruct(PyramidAlgorithm):
         finest = record.pyramid.synthesise()
         require_running(feedback)
         feedback.setProgress(60)
-        results = {"N_VERTICES": finest.n_vertices, "EXACT": "yes" if record.source.is_exact else "no"}
+        results = {"N_VERTICES": finest.n_vertices, "EXACT": _exactness(record)}
         if record.source.kind == "raster":
             self._write_dem(parameters, context, record, finest, crs, feedback, results)
         elif record.source.kind == "points":
@@ -139,3 +139,9 @@ class Reconstruct(PyramidAlgorithm):
                 "take the TIN."
             )
         return self.tr("This pyramid was made from a TIN; choose where the TIN goes.")
+
+
+def _exactness(record) -> str:
+    if record.source.is_exact:
+        return "yes"
+    return "no" if record.history else "to rounding"

@@ -21,7 +21,7 @@ collect_ignore_glob = [] if HAS_QGIS else ["test_qgis_*.py"]
 def pytest_terminal_summary(terminalreporter):
     if not HAS_QGIS:
         terminalreporter.write_line(
-            "QGIS: its tests did not run, as this Python has no qgis module; 'make test-qgis' runs them"
+            "QGIS: its tests did not run here (no qgis module); 'make test-qgis' runs them"
         )
 
 
