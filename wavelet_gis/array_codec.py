@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,9 @@ __all__ = ["ArrayHeader", "decode_array", "encode_array", "header_of"]
 
 #: Uncompressed bytes in a chunk, at most. Small enough to be undone in memory twice over.
 CHUNK_BYTES = 4 << 20
+
+#: Chunks beyond this are refused: a reader's memory must not be a stranger's choice.
+MAX_CHUNK_BYTES = 16 * CHUNK_BYTES
 
 #: zlib level: on pyramids of real DEMs 6 took 1.1 to 5 times the time for 0.4 to 10 % fewer bytes.
 COMPRESSION_LEVEL = 1
@@ -66,6 +69,12 @@ class ArrayHeader:
         return math.prod(self.shape) * np.dtype(self.dtype).itemsize
 
     @property
+    def chunk_bytes(self) -> int:
+        """Uncompressed size of the largest chunk."""
+        row_bytes = math.prod(self.shape[1:]) * np.dtype(self.dtype).itemsize
+        return min(self.chunk_rows, self.shape[0]) * row_bytes
+
+    @property
     def n_chunks(self) -> int:
         """Number of chunks."""
         return -(-self.shape[0] // self.chunk_rows) if self.n_bytes else 0
@@ -81,25 +90,28 @@ class ArrayHeader:
         PyramidError
             When one of them is nothing that this package writes.
         """
-        is_shape = (
-            isinstance(shape, list | tuple)
-            and len(shape) in (1, 2)
-            and all(isinstance(n, int) and not isinstance(n, bool) and n >= 0 for n in shape)
-        )
+        sizes = tuple(shape) if isinstance(shape, list | tuple) else ()
+        is_shape = len(sizes) in (1, 2) and all(type(n) is int and n >= 0 for n in sizes)
         is_sound = (
             dtype in _DTYPES
             and is_shape
-            and math.prod(shape) < 1 << 40
+            and math.prod(sizes) < 1 << 40
             and filter_name in ("shuffle", "delta_shuffle")
             and isinstance(chunk_rows, int)
             and chunk_rows >= 1
         )
         if not is_sound:
             raise PyramidError(
-                f"an array is declared as {dtype!r} {shape!r} {filter_name!r} {chunk_rows!r}, which "
-                "no pyramid file holds; the file is damaged."
+                f"an array is declared as {dtype!r} {shape!r} {filter_name!r} {chunk_rows!r}, "
+                "which no pyramid file holds; the file is damaged."
             )
-        return cls(str(dtype), tuple(shape), filter_name, chunk_rows)
+        header = cls(str(dtype), sizes, cast(Filter, filter_name), cast(int, chunk_rows))
+        if header.chunk_bytes > MAX_CHUNK_BYTES:
+            raise PyramidError(
+                f"an array declares chunks of {header.chunk_bytes} bytes, more than any pyramid "
+                "file holds; the file is damaged."
+            )
+        return header
 
 
 def header_of(array: NDArray[Any]) -> ArrayHeader:

@@ -22,7 +22,7 @@ def check_output(
     suffixes: tuple[str, ...] = (),
     inputs: tuple[str | os.PathLike[str], ...] = (),
 ) -> Path:
-    """The output's path, once it is known that it may be written.
+    """Return the output's path, once it is known that it may be written.
 
     Called before the long work, so that a refusal comes at once and not after an hour.
 
@@ -71,7 +71,7 @@ def check_output(
 
 @contextmanager
 def new_file(path: str | os.PathLike[str], *, overwrite: bool = False) -> Iterator[Path]:
-    """A path to write to, in a scratch folder beside `path`; moved to `path` on success.
+    """Yield a path to write to, in a scratch folder beside `path`; moved to `path` on success.
 
     Whatever else the writer leaves in the scratch folder (a ``.prj`` or ``.aux.xml`` beside
     the file) is moved along, the named file last. When the block raises, also for Ctrl-C,

@@ -18,6 +18,7 @@ import sqlite3
 import sys
 from collections.abc import Sequence
 from types import ModuleType
+from typing import Any
 
 from wavelet_gis import commands
 from wavelet_gis.console import PROGRAM, SCRATCH_PREFIX, Console
@@ -92,9 +93,7 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except MemoryError:
-        _complain(
-            "there is not enough memory for this input; cut it into tiles, or thin it first"
-        )
+        _complain("there is not enough memory for this input; cut it into tiles, or thin it first")
     except Exception as error:
         if os.environ.get(DEBUG_VARIABLE):
             raise
@@ -114,7 +113,7 @@ class _Terminated(BaseException):
     """SIGTERM came; unwinds so that scratch files go."""
 
 
-def _stop_on_termination() -> object:
+def _stop_on_termination() -> Any:
     def stop(signal_number: int, frame: object) -> None:
         raise _Terminated
 

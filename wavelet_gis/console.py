@@ -55,7 +55,7 @@ class Console:
 
     @contextmanager
     def progress(self, what: str) -> Iterator[Progress]:
-        """A function that takes a fraction and moves a bar, which is seen on a terminal only."""
+        """Yield a function that takes a fraction and moves a bar, seen on a terminal only."""
         self._show_warnings()
         if self._quiet or not sys.stderr.isatty():
             yield lambda fraction: True

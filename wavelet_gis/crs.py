@@ -237,7 +237,7 @@ def working_frame(
     bounds: tuple[float, float, float, float],
     vertical_unit: str | None = None,
 ) -> LocalFrame:
-    """The frame in which geometry over `bounds` is computed.
+    """Return the frame in which geometry over `bounds` is computed.
 
     Parameters
     ----------
@@ -313,7 +313,7 @@ def metres_per_degree(latitude: float, system: CoordinateSystem) -> tuple[float,
 
 
 def vertical_unit_name(text: str) -> str:
-    """The unit's name as this package writes it.
+    """Return the unit's name as this package writes it.
 
     Raises
     ------

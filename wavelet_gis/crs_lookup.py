@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wavelet_gis.crs import CoordinateSystem, vertical_unit_name
+from wavelet_gis.crs import CoordinateSystem, Kind, vertical_unit_name
 from wavelet_gis.errors import CrsError
 
 if TYPE_CHECKING:
@@ -14,7 +14,7 @@ __all__ = ["coordinate_system", "epsg_of"]
 
 
 def coordinate_system(definition: str | None) -> CoordinateSystem:
-    """What is known of the CRS that a text defines.
+    """Return what is known of the CRS that a text defines.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def coordinate_system(definition: str | None) -> CoordinateSystem:
 
 
 def epsg_of(system: CoordinateSystem) -> int | None:
-    """The EPSG code of a CRS where its definition names one, else None."""
+    """Return the EPSG code of a CRS where its definition names one, else None."""
     if system.wkt is None:
         return None
     from pyproj import CRS
@@ -78,7 +78,7 @@ def _horizontal_part(crs: CRS) -> CRS:
     return crs
 
 
-def _kind(horizontal: CRS) -> str:
+def _kind(horizontal: CRS) -> Kind:
     if horizontal.is_geographic:
         return "geographic"
     return "projected" if horizontal.is_projected else "unknown"

@@ -270,13 +270,11 @@ class RasterSource:
             if ledger.dtype != dtype:
                 raise PyramidError("the raster's ledger has another data type; analyse it anew.")
         geometry = GridGeometry((n_rows, n_columns), transform)  # type: ignore[arg-type]
-        return cls(
-            geometry, nodata, scale, offset, profile, dtype, valid, holes, ledger, digest
-        )
+        return cls(geometry, nodata, scale, offset, profile, dtype, valid, holes, ledger, digest)
 
 
 def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
-    """The grid triangulation of a DEM in the working frame: a vertex at each valid cell centre.
+    """Return the grid triangulation of a DEM, a vertex at each valid cell centre.
 
     Parameters
     ----------
@@ -298,7 +296,8 @@ def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
     n_rows, n_columns = dem.geometry.shape
     elevation = np.zeros(dem.geometry.shape)
     elevation[dem.valid] = frame.local_z(dem.elevations())
-    columns, rows = np.arange(n_columns), np.arange(n_rows)
+    columns = np.arange(n_columns, dtype=np.float64)
+    rows = np.arange(n_rows, dtype=np.float64)
     if dem.geometry.is_axis_aligned:
         a, _, c, _, e, f = dem.geometry.transform
         x = frame.local_x(a * (columns + 0.5) + c)
@@ -312,7 +311,7 @@ def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
 
 
 def grid_bounds(geometry: GridGeometry) -> tuple[float, float, float, float]:
-    """The smallest and largest x and y of the raster's corners: x_min, y_min, x_max, y_max."""
+    """Return x_min, y_min, x_max, y_max of the raster's corners."""
     n_rows, n_columns = geometry.shape
     columns = np.array([0, n_columns, n_columns, 0]) - 0.5
     rows = np.array([0, 0, n_rows, n_rows]) - 0.5

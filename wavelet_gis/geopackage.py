@@ -87,7 +87,7 @@ def create_geopackage(path: str | os.PathLike[str]) -> None:
 
 @contextmanager
 def open_for_writing(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
-    """A connection to a file that nobody else knows yet, committed when the block ends.
+    """Yield a connection to a file that nobody else knows yet, committed when the block ends.
 
     There is no journal: a file that fails half-way is a scratch file and is thrown away.
     """
@@ -103,7 +103,7 @@ def open_for_writing(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connectio
 
 @contextmanager
 def open_stranger(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
-    """A read-only connection to a GeoPackage of unknown origin.
+    """Yield a read-only connection to a GeoPackage of unknown origin.
 
     Raises
     ------
@@ -138,9 +138,7 @@ def table_names(connection: sqlite3.Connection) -> set[str]:
     return {str(name) for (name,) in rows}
 
 
-def register_attributes_table(
-    connection: sqlite3.Connection, table: str, description: str
-) -> None:
+def register_attributes_table(connection: sqlite3.Connection, table: str, description: str) -> None:
     """List a non-spatial table in the GeoPackage's contents."""
     connection.execute(
         "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change, "
@@ -168,7 +166,7 @@ def write_styles(path: str | os.PathLike[str], styles: Iterable[LayerStyle]) -> 
 
 
 def now() -> str:
-    """The time in GeoPackage's form; that of SOURCE_DATE_EPOCH where it is set.
+    """Return the time in GeoPackage's form; that of SOURCE_DATE_EPOCH where it is set.
 
     With that variable, two runs on the same input write the same bytes.
     """

@@ -26,7 +26,7 @@ _UNITS = {9001: "metre", 9002: "foot", 9003: "us_survey_foot"}
 
 
 def las_crs(header: LasHeader) -> Georeference:
-    """The CRS of a LAS file and its unit of z, with what is wrong with them.
+    """Return the CRS of a LAS file and its unit of z, with what is wrong with them.
 
     The WKT record is preferred; where it is broken or empty, the GeoTIFF keys are tried.
 
@@ -52,7 +52,7 @@ def las_crs(header: LasHeader) -> Georeference:
 
 
 def _text_of(record: Any) -> str:
-    raw = record.record_data_bytes()
+    raw: bytes = record.record_data_bytes()
     return raw.split(b"\0")[0].decode("utf-8", errors="replace").strip()
 
 
@@ -72,7 +72,7 @@ def _is_understood(wkt: str, faults: list[str]) -> bool:
 
 
 def _geo_keys(records: list[Any]) -> dict[int, int]:
-    """The keys that hold their value themselves, by id."""
+    """Return the keys that hold their value themselves, by id."""
     for record in records:
         if record.record_id == 34735 and hasattr(record, "geo_keys"):
             return {

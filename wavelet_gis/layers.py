@@ -51,7 +51,7 @@ class Layer:
 
 
 def coarse_layers(record: PyramidRecord, level: int = 0) -> Iterator[Layer]:
-    """The TIN and the vertices of a level, by default the coarsest.
+    """Yield the TIN and the vertices of a level, by default the coarsest.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def tin_layers(
     vertex_ids: NDArray[np.int64],
     name: str = "tin",
 ) -> Iterator[Layer]:
-    """The layers of a TIN: ``<name>_tin`` and ``<name>_vertices``.
+    """Yield the layers of a TIN: ``<name>_tin`` and ``<name>_vertices``.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def tin_layers(
 
 
 def detail_layers(record: PyramidRecord) -> Iterator[Layer]:
-    """A layer of details for each step, coarsest first, made one at a time.
+    """Yield a layer of details for each step, coarsest first, made one at a time.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ _DETAIL_FIELDS = ("vertex_id", "level", "magnitude")
 
 
 def _free_name(wanted: str, taken: Sequence[str]) -> str:
-    """A column name that differs from others in more than case, as SQLite needs."""
+    """Return a column name that differs from others in more than case, as SQLite needs."""
     used = {name.lower() for name in taken}
     name, k = wanted, 2
     while name.lower() in used:

@@ -129,7 +129,7 @@ class ExactColumn:
 
 
 def exact_column(original: NDArray[Any], approximate: NDArray[np.float64]) -> ExactColumn:
-    """What `approximate` needs to become `original` again.
+    """Return what `approximate` needs to become `original` again.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def checksum(columns: Iterable[NDArray[Any]]) -> str:
     digest = hashlib.sha256()
     for column in columns:
         little = np.ascontiguousarray(column, dtype=column.dtype.newbyteorder("<"))
-        digest.update(memoryview(little.reshape(-1).view(np.uint8)))
+        digest.update(little.reshape(-1).view(np.uint8).data)
     return digest.hexdigest()
 
 

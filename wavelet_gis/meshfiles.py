@@ -20,9 +20,7 @@ __all__ = ["MESH_SUFFIXES", "write_2dm", "write_mesh", "write_obj", "write_ply"]
 _LINES_AT_ONCE = 1 << 16
 
 
-def write_mesh(
-    path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None = None
-) -> None:
+def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None = None) -> None:
     """Write a TIN in the format that the suffix names.
 
     Parameters
@@ -113,7 +111,7 @@ def _write_lines(stream: IO[str], pattern: str, rows: NDArray[np.generic]) -> No
 
 
 def _identifier(name: str) -> str:
-    """A property name without the blanks that would end it."""
+    """Return a property name without the blanks that would end it."""
     cleaned = "".join(c if c.isalnum() and c.isascii() else "_" for c in name)
     return cleaned or "attribute"
 

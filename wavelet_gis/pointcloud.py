@@ -52,7 +52,7 @@ def read_cloud(
     classes: Sequence[int] | None = None,
     carry: bool = True,
 ) -> tuple[PointCloud, Georeference]:
-    """The chosen points of a LAS or LAZ file, and what it tells of their coordinates.
+    """Return the chosen points of a LAS or LAZ file, and what it tells of their coordinates.
 
     Parameters
     ----------
@@ -326,7 +326,7 @@ def _with_values(attribute: PointAttribute, values: NDArray[Any]) -> PointAttrib
 def _carried(
     points: PackedPointRecord, lifted: list[PointAttribute], chosen: NDArray[np.bool_] | None
 ) -> dict[str, NDArray[Any]]:
-    """The fields of the records that the pyramid does not hold.
+    """Return the fields of the records that the pyramid does not hold.
 
     A lifted sub-field (the class of formats 0 to 5 shares its byte with flags) stays in its
     byte, and so do the other components of an array.

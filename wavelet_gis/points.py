@@ -6,6 +6,7 @@ Nothing here opens a file: `wavelet_gis.pointcloud` does so with laspy.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -144,7 +145,12 @@ class PointSource:
     kind = "points"
 
     @classmethod
-    def from_cloud(cls, cloud: PointCloud, kept: NDArray[np.int64], representative) -> PointSource:
+    def from_cloud(
+        cls,
+        cloud: PointCloud,
+        kept: NDArray[np.int64],
+        representative: NDArray[np.int64],
+    ) -> PointSource:
         """Return the source of a cloud, before there is a pyramid (and so without a ledger).
 
         Parameters
@@ -157,7 +163,7 @@ class PointSource:
         is_dropped = np.ones(cloud.n_points, dtype=bool)
         is_dropped[kept] = False
         dropped = np.flatnonzero(is_dropped)
-        vertex = np.asarray(representative)[dropped]
+        vertex = representative[dropped]
         differences = cloud.integers[dropped].astype(np.int64) - cloud.integers[kept[vertex]]
         return cls(
             cloud=_emptied(cloud),
@@ -253,7 +259,7 @@ class PointSource:
         is_kept[self.dropped] = False
         return np.flatnonzero(is_kept)
 
-    def _approximate(self, mesh: TriangleMesh, frame: LocalFrame):
+    def _approximate(self, mesh: TriangleMesh, frame: LocalFrame) -> Iterator[NDArray[np.float64]]:
         """Yield the columns of the mesh in the units that the file stores."""
         x, y, z = mesh.vertices.T
         in_file = (frame.file_x(x), frame.file_y(y), frame.file_z(z))
@@ -334,8 +340,7 @@ class PointSource:
             offsets=np.array(fields["offsets"], dtype=np.float64),
             attributes=attributes,
             carried={
-                str(name): arrays[f"source/carried_{k}"]
-                for k, name in enumerate(fields["carried"])
+                str(name): arrays[f"source/carried_{k}"] for k, name in enumerate(fields["carried"])
             },
             header=arrays["source/header"],
             evlrs=arrays["source/evlrs"],
@@ -396,7 +401,7 @@ class PointSource:
 
 
 def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, PointSource]:
-    """The Delaunay TIN of the points in the working frame, and how to come back from it.
+    """Return the Delaunay TIN of the points in the working frame, and how to come back from it.
 
     Parameters
     ----------
@@ -436,7 +441,7 @@ def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, Poin
 
 
 def cloud_bounds(cloud: PointCloud) -> tuple[float, float, float, float]:
-    """The smallest and largest x and y of the points: x_min, y_min, x_max, y_max."""
+    """Return x_min, y_min, x_max, y_max of the points."""
     low = cloud.integers.min(axis=0) * cloud.scales + cloud.offsets
     high = cloud.integers.max(axis=0) * cloud.scales + cloud.offsets
     low, high = np.minimum(low, high), np.maximum(low, high)  # a scale may be negative

@@ -21,7 +21,6 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 import wavelet_core
@@ -216,7 +215,12 @@ def _from_parts(
     if not isinstance(n_levels, int) or not 0 <= n_levels <= _MAX_LEVELS:
         raise PyramidError(f"the file claims {n_levels!r} levels; analyse the input anew.")
     steps = [
-        Step(**{name: arrays.get(f"steps/{k:04d}/{name}", code) for name, code in _STEP_DTYPES.items()})
+        Step(
+            **{
+                name: arrays.get(f"steps/{k:04d}/{name}", code)
+                for name, code in _STEP_DTYPES.items()
+            }
+        )
         for k in range(n_levels)
     ]
     signal = described["signal"]
@@ -247,7 +251,7 @@ def _from_parts(
         vertical_unit=str(metadata["vertical_unit"]),
         source=source,
         source_name=str(metadata["source_name"]),
-        errors=levels if len(levels) == n_levels + 1 else None,
+        errors=levels if len(levels) == n_levels + 1 and _are_measured(levels) else None,
         history=tuple(str(line) for line in metadata["history"]),
     )
 
@@ -268,15 +272,15 @@ def _source_from(fields: dict[str, Any], arrays: _Arrays) -> Source:
 
 
 def _write_levels(connection: sqlite3.Connection, record: PyramidRecord) -> None:
-    errors = record.errors
-    if errors is None:
-        pyramid = record.pyramid
+    pyramid = record.pyramid
+    rows: list[tuple[float | None, ...]]
+    if record.errors is None:
         rows = [
             (level, pyramid.n_vertices(level), pyramid.n_faces(level), None, None, None, None)
             for level in range(pyramid.n_levels, -1, -1)
         ]
     else:
-        rows = [tuple(level) for level in errors]
+        rows = [tuple(level) for level in record.errors]
     connection.executemany(
         "INSERT INTO wavelet_levels (level, n_vertices, n_faces, rmse_coefficients, rmse_surface, "
         "max_error_surface, n_uncovered) VALUES (?,?,?,?,?,?,?)",
@@ -297,8 +301,12 @@ def _read_levels(connection: sqlite3.Connection) -> tuple[LevelErrors, ...]:
     )
 
 
+def _are_measured(levels: tuple[LevelErrors, ...]) -> bool:
+    return all(math.isfinite(value) for level in levels for value in level)
+
+
 def _figure(value: object, kind: type) -> Any:
-    """A number for people to read; NaN where there is none, or something else stands there."""
+    """Return a number for people to read; NaN where there is none, or something else."""
     if isinstance(value, int | float) and math.isfinite(value):
         return kind(value)
     return math.nan

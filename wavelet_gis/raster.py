@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 import os
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wavelet_gis.crs import Georeference
 from wavelet_gis.dem import Dem, GridGeometry
-from wavelet_gis.errors import InputFileError, OutputFileError, RasterWarning
+from wavelet_gis.errors import InputFileError, OutputFileError
 
 if TYPE_CHECKING:
     from rasterio.io import DatasetReader, DatasetWriter
@@ -204,13 +202,11 @@ def _nodata(dataset: DatasetReader, index: int) -> float | int | None:
 
 
 def _profile(dataset: DatasetReader, index: int) -> dict[str, Any]:
-    """What the writer may take over, as JSON-able values."""
+    """Return what the writer may take over, as JSON-able values."""
     from rasterio.enums import MaskFlags
 
     structure = dataset.tags(ns="IMAGE_STRUCTURE")
-    options = {
-        key: value for key, value in dataset.profile.items() if key in _GTIFF_OPTIONS
-    }
+    options = {key: value for key, value in dataset.profile.items() if key in _GTIFF_OPTIONS}
     if "PREDICTOR" in structure:
         options["predictor"] = int(structure["PREDICTOR"])
     if str(options.get("compress", "lzw")).lower() not in _LOSSLESS:
@@ -290,7 +286,7 @@ def _driver_of(path: str | os.PathLike[str]) -> str:
 
 
 def _reason(error: Exception) -> str:
-    """The first line of GDAL's complaint, as a sentence with a remedy."""
+    """Return the first line of GDAL's complaint, as a sentence with a remedy."""
     cause = error.__cause__ or error
     text = str(cause).splitlines()[0] if str(cause) else type(cause).__name__
     if "not recognized" in text:

@@ -68,10 +68,8 @@ def rasterise(
     return result
 
 
-def geometry_over(
-    bounds: tuple[float, float, float, float], cell_size: float
-) -> GridGeometry:
-    """A north-up grid whose cells cover the bounds.
+def geometry_over(bounds: tuple[float, float, float, float], cell_size: float) -> GridGeometry:
+    """Return a north-up grid whose cells cover the bounds.
 
     Parameters
     ----------
@@ -103,7 +101,7 @@ def geometry_over(
 
 
 def _snapped(positions: FloatArray) -> FloatArray:
-    """Put vertices that are cell centres but for rounding on them: their values come back exactly."""
+    """Put vertices that are cell centres but for rounding on them, so their values come back."""
     nearest = np.rint(positions)
     return np.where(np.abs(positions - nearest) < TOLERANCE, nearest, positions)
 
@@ -155,7 +153,9 @@ def _row_interval(corners: FloatArray, rows: IntArray) -> tuple[FloatArray, Floa
     inside = np.clip(rows, corners[:, :, 1].min(axis=1), corners[:, :, 1].max(axis=1))
     for k in range(3):
         a, b = corners[:, k], corners[:, (k + 1) % 3]
-        crosses = (np.minimum(a[:, 1], b[:, 1]) <= inside) & (inside <= np.maximum(a[:, 1], b[:, 1]))
+        crosses = (np.minimum(a[:, 1], b[:, 1]) <= inside) & (
+            inside <= np.maximum(a[:, 1], b[:, 1])
+        )
         rise = b[:, 1] - a[:, 1]
         with np.errstate(divide="ignore", invalid="ignore"):
             along = np.where(rise == 0, 0.0, (inside - a[:, 1]) / rise)
@@ -179,4 +179,5 @@ def _barycentric(corners: FloatArray, columns: IntArray, rows: IntArray) -> Floa
     weights = np.column_stack([1 - weight_b - weight_c, weight_b, weight_c])
     weights = np.clip(weights, 0, 1)
     weights[flat] = 1 / 3
-    return weights / weights.sum(axis=1, keepdims=True)
+    weights /= weights.sum(axis=1, keepdims=True)
+    return weights

@@ -6,6 +6,7 @@ coloured by level. Written as text: QGIS 3.28 to 4 read it, and nothing need be 
 
 from __future__ import annotations
 
+from itertools import pairwise
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -58,7 +59,7 @@ def tin_style(elevation: NDArray[np.float64]) -> str:
     """
     breaks = _breaks(elevation, len(_TERRAIN))
     symbols, ranges = [], []
-    for k, (low, high) in enumerate(zip(breaks[:-1], breaks[1:], strict=True)):
+    for k, (low, high) in enumerate(pairwise(breaks)):
         symbols.append(_fill_symbol(k, _TERRAIN[k * len(_TERRAIN) // (len(breaks) - 1)]))
         label = quoteattr(f"{low:.4g} - {high:.4g}")
         ranges.append(
@@ -92,10 +93,11 @@ def detail_style(level: int, n_levels: int, magnitude: NDArray[np.float64]) -> s
     colour = _LEVELS[round(position)]
     largest = float(np.percentile(magnitude, 98)) if len(magnitude) else 1.0
     largest = largest if np.isfinite(largest) and largest > 0 else 1.0
-    # Half more than the points' mean spacing at full extent: large ones stand out, the rest do not merge.
+    # Half more than the points' mean spacing at full extent: large ones stand out, few merge.
     diameter = float(np.clip(1.5 * _MAP_WIDTH / max(len(magnitude), 1) ** 0.5, *_LARGEST))
     expression = (
-        f'scale_linear(min("magnitude", {largest!r}), 0, {largest!r}, {_SMALLEST:g}, {diameter:.3g})'
+        f'scale_linear(min("magnitude", {largest!r}), 0, {largest!r}, '
+        f"{_SMALLEST:g}, {diameter:.3g})"
     )
     return _single_marker(colour, 2.0, "0", expression)
 

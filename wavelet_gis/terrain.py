@@ -78,7 +78,7 @@ def open_terrain(
     crs: str | None = None,
     vertical_unit: str | None = None,
 ) -> Terrain:
-    """The terrain in a raster or a LAS file.
+    """Return the terrain in a raster or a LAS file.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def open_terrain(
 def terrain_of_dem(
     name: str, dem: Dem, system: CoordinateSystem, vertical_unit: str | None = None
 ) -> Terrain:
-    """The terrain of a DEM that is in memory already, as QGIS hands it over.
+    """Return the terrain of a DEM that is in memory already, as QGIS hands it over.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def terrain_of_cloud(
     *,
     fault: str = "",
 ) -> Terrain:
-    """The terrain of a point cloud that is in memory already.
+    """Return the terrain of a point cloud that is in memory already.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def _warn(message: str) -> None:
 
 
 def _known_unit(unit: str | None) -> str | None:
-    """The unit that a raster band names, if it is a length that we know."""
+    """Return the unit that a raster band names, if it is a length that we know."""
     try:
         return vertical_unit_name(unit) if unit else None
     except CrsError:

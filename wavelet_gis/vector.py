@@ -57,7 +57,7 @@ def add_layers(
 
 
 def _write_layer(path: str | os.PathLike[str], layer: Layer, crs: str | None) -> None:
-    from pyogrio.errors import DataSourceError, DataLayerError
+    from pyogrio.errors import DataLayerError, DataSourceError
     from pyogrio.raw import write
 
     with warnings.catch_warnings():
@@ -87,7 +87,7 @@ def _write_layer(path: str | os.PathLike[str], layer: Layer, crs: str | None) ->
 
 
 def _crs_for_gdal(system: CoordinateSystem) -> str | None:
-    """The definition for the layers; None where a GeoPackage could not hold it."""
+    """Return the definition for the layers; None where a GeoPackage could not hold it."""
     if system.wkt is None:
         return None
     if system.kind == "unknown":

@@ -112,9 +112,7 @@ def analysis_options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def add_overwrite_argument(parser: argparse.ArgumentParser) -> None:
     """Add the leave to replace an output that exists."""
-    parser.add_argument(
-        "--overwrite", action="store_true", help="replace an output that exists"
-    )
+    parser.add_argument("--overwrite", action="store_true", help="replace an output that exists")
 
 
 def _names(text: str) -> tuple[str, ...]:

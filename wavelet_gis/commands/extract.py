@@ -34,9 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="in the unit of the CRS; by default the grid of the input, and for points their "
         "mean spacing at this level",
     )
-    raster.add_argument(
-        "--attribute", metavar="NAME", help="an attribute instead of the elevation"
-    )
+    raster.add_argument("--attribute", metavar="NAME", help="an attribute instead of the elevation")
     raster.add_argument("--cog", action="store_true", help="write a cloud-optimised GeoTIFF")
     add_overwrite_argument(parser)
 

@@ -14,9 +14,7 @@ HELP = "Give back the DEM or the LAS/LAZ file that a pyramid was made from, bit 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("file", help="a pyramid file")
-    parser.add_argument(
-        "output", help="a raster, such as .tif, or .las or .laz, as the input was"
-    )
+    parser.add_argument("output", help="a raster, such as .tif, or .las or .laz, as the input was")
     add_overwrite_argument(parser)
 
 
