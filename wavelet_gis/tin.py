@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Pyramid, TriangleMesh
 from wavelet_core.errors import MeshError
 from wavelet_core.metrics import surface_errors
-from wavelet_core.triangulation import delaunay_faces, merge_duplicates
+from wavelet_core.triangulation import Merged, delaunay_faces, merge_duplicates
 from wavelet_gis.crs import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
 from wavelet_gis.record import MeshSource, PyramidRecord
 
@@ -159,7 +159,7 @@ class TinTerrain(NamedTuple):
     frame: LocalFrame
     vertical_unit: str
 
-    def record(self, pyramid) -> PyramidRecord:
+    def record(self, pyramid: Pyramid) -> PyramidRecord:
         """Return the pyramid with everything that its file must hold."""
         return PyramidRecord(
             pyramid=pyramid,
@@ -216,7 +216,7 @@ def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:
     return of_lines
 
 
-def _merged_by_line(vertices: FloatArray, n_points: int):
+def _merged_by_line(vertices: FloatArray, n_points: int) -> Merged:
     """Merge vertices at one place; those of a line stand for the points there."""
     ranked = vertices.copy()
     # merge_duplicates keeps the lowest, so lines are put below all points.

@@ -72,7 +72,7 @@ class DetailLayers(PyramidAlgorithm):
                 "OUTPUT", self.tr("Details by level"), QgsProcessing.SourceType.TypeVectorPoint
             ),
             self.tr(
-                "Fields: <i>vertex_id</i> in the input, <i>level</i>, <i>w_…</i> the detail of each "
+                "Fields: <i>vertex_id</i> in the input, <i>level</i>, <i>w_…</i> the detail of a "
                 "channel, <i>magnitude</i> the length of the detail vector."
             ),
         )

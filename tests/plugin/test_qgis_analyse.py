@@ -1,0 +1,395 @@
+"""Rasters, points, TINs and LAS files to pyramids and back, in a real QGIS."""
+
+import numpy as np
+import pytest
+from qgis_layers import (
+    Log,
+    assert_same_raster,
+    hills,
+    point_layer,
+    read_raster,
+    survey,
+    wkt_layer,
+    write_raster,
+)
+
+
+@pytest.fixture
+def refused(run):
+    """Return a function that runs what must be refused and returns the message in the log."""
+    from qgis.core import QgsProcessingException
+
+    def run_refused(name, parameters):
+        log = Log()
+        with pytest.raises(QgsProcessingException) as caught:
+            run(name, parameters, feedback=log)
+        message = "\n".join([str(caught.value), *log.errors])
+        assert "Traceback" not in message
+        return message
+
+    return run_refused
+
+
+@pytest.fixture(scope="module")
+def pyramid(qgis, tmp_path_factory):
+    """Return the results of an analysis in five levels of a small DEM."""
+    import processing
+
+    folder = tmp_path_factory.mktemp("levels")
+    path = write_raster(folder / "dem.tif", hills().astype("float32"), -9999.0)
+    return processing.run(
+        "terrainwavelets:analysedem",
+        {"INPUT": path, "OUTPUT": str(folder / "p.gpkg"), "LEVELS": 5},
+    )
+
+
+class TestDem:
+    @pytest.mark.parametrize("dtype", ["uint8", "int16", "uint16", "int32", "float32", "float64"])
+    def test_reconstruct_is_bit_identical(self, run, tmp_path, dtype):
+        values = (hills() / (2 if dtype == "uint8" else 1)).astype(dtype)
+        values[5:9, 10:20] = values.dtype.type(7)
+        path = write_raster(tmp_path / "dem é b.tif", values, nodata=7)
+        made = run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "out.gpkg")})
+        assert made["N_VERTICES"] == values.size - 40
+        assert made["COARSE_VERTICES"] < made["N_VERTICES"] / 5
+        back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "back.tif")})
+        assert back["EXACT"] == "yes"
+        assert_same_raster(path, back["DEM"])
+
+    def test_nan_and_degrees(self, run, tmp_path):
+        values = hills().astype("float32")
+        values[20:30, 30:50] = np.nan
+        path = write_raster(tmp_path / "dem.tif", values, float("nan"), 4326, (7.0, 44.0), 1 / 1200)
+        made = run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "out.gpkg")})
+        back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "back.tif")})
+        assert_same_raster(path, back["DEM"])
+
+    def test_nodata_set_in_the_layer_properties_is_a_hole(self, run, tmp_path):
+        from qgis.core import QgsRasterLayer, QgsRasterRange
+
+        values = hills().astype("float32")
+        values[:10] = -1.0
+        layer = QgsRasterLayer(write_raster(tmp_path / "dem.tif", values), "dem")
+        layer.dataProvider().setUserNoDataValue(1, [QgsRasterRange(-2.0, -1.0)])
+        made = run("analysedem", {"INPUT": layer, "OUTPUT": str(tmp_path / "out.gpkg")})
+        assert made["N_VERTICES"] == 50 * 80
+
+    def test_a_layer_of_another_provider_is_read_through_qgis(self, run, tmp_path):
+        from qgis.core import QgsRasterLayer
+
+        path = write_raster(tmp_path / "dem.tif", hills().astype("float32"))
+        source = QgsRasterLayer(path, "dem")
+        uri = (
+            "?crs=EPSG:2154&extent=700000,6599400,700800,6600000&width=80&height=60"
+            f"&formula=%22dem@1%22%20*%202&dem:uri={path}&dem:provider=gdal"
+        )
+        virtual = QgsRasterLayer(uri, "virtual", "virtualraster")
+        assert source.isValid()
+        assert virtual.isValid(), virtual.error().message()
+        made = run("analysedem", {"INPUT": virtual, "OUTPUT": str(tmp_path / "out.gpkg")})
+        back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "back.tif")})
+        doubled = np.frombuffer(read_raster(path)["bytes"], "f4").astype("f8") * 2
+        restored = read_raster(back["DEM"])
+        numbers = np.frombuffer(restored["bytes"], "f4" if restored["type"] == 6 else "f8")
+        assert np.array_equal(numbers.astype("f8"), doubled.astype(numbers.dtype).astype("f8"))
+
+    def test_stop_rules_are_kept(self, run, tmp_path):
+        path = write_raster(tmp_path / "dem.tif", hills().astype("float32"))
+        made = run(
+            "analysedem",
+            {"INPUT": path, "OUTPUT": str(tmp_path / "out.gpkg"), "TARGET_VERTICES": 321},
+        )
+        assert made["COARSE_VERTICES"] == 321
+        tight = run(
+            "analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "b.gpkg"), "MAX_ERROR": 8.0}
+        )
+        assert 0 < tight["MAX_ERROR_SURFACE"] <= 8.0
+
+    def test_the_pyramid_is_a_valid_geopackage_with_styled_layers(self, run, tmp_path):
+        from osgeo_utils.samples import validate_gpkg
+        from qgis.core import QgsVectorLayer
+
+        path = write_raster(tmp_path / "dem.tif", hills().astype("float32"))
+        made = run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "o.gpkg"), "LEVELS": 3})
+        validate_gpkg.check(made["OUTPUT"])
+        tin = QgsVectorLayer(made["OUTPUT"] + "|layername=coarse_tin", "tin")
+        assert tin.featureCount() == made["COARSE_FACES"]
+        assert tin.crs().authid() == "EPSG:2154"
+        assert tin.renderer().type() == "graduatedSymbol"
+        details = QgsVectorLayer(made["OUTPUT"] + "|layername=detail_level_02", "details")
+        assert {"vertex_id", "level", "w_z", "magnitude"} <= set(details.fields().names())
+        assert details.hasSpatialIndex() == details.SpatialIndexPresence.SpatialIndexPresent
+        assert tin.extent().width() == pytest.approx(790.0)
+
+    def test_refusals_say_what_to_do(self, refused, tmp_path):
+        empty = np.full((20, 30), -9999.0, "float32")
+        path = write_raster(tmp_path / "void.tif", empty, -9999.0)
+        out = str(tmp_path / "out.gpkg")
+        assert "nodata" in refused("analysedem", {"INPUT": path, "OUTPUT": out})
+        wide = write_raster(
+            tmp_path / "wide.tif", hills().astype("float32"), None, 4326, (0.0, 60.0), 0.5
+        )
+        assert "reproject" in refused("analysedem", {"INPUT": wide, "OUTPUT": out})
+        text = tmp_path / "text.tif"
+        text.write_text("no raster")
+        assert refused("analysedem", {"INPUT": str(text), "OUTPUT": out})
+        assert not (tmp_path / "out.gpkg").exists()
+
+    def test_a_dem_without_crs_is_worked_on_with_a_warning(self, run, tmp_path):
+        path = write_raster(tmp_path / "dem.tif", hills().astype("float32"), epsg=None)
+        log = Log()
+        run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "o.gpkg")}, feedback=log)
+        assert any("CRS" in warning for warning in log.warnings)
+
+    @pytest.mark.parametrize("percent", [1, 20, 60])
+    def test_cancel_leaves_nothing_behind(self, run, tmp_path, percent):
+        path = write_raster(tmp_path / "dem.tif", hills(200, 200).astype("float32"))
+        log = Log(cancel_at=percent)
+        folder = tmp_path / "results"
+        folder.mkdir()
+        made = run("analysedem", {"INPUT": path, "OUTPUT": str(folder / "o.gpkg")}, feedback=log)
+        assert not made.get("OUTPUT")
+        assert list(folder.iterdir()) == []
+        assert max(log.fractions) < 100
+
+
+class TestLevels:
+    def test_every_output_of_a_level(self, run, pyramid, tmp_path):
+        from qgis.core import QgsMeshLayer, QgsRasterLayer
+
+        made = run(
+            "extractlevel",
+            {
+                "INPUT": pyramid["OUTPUT"],
+                "LEVEL": 2,
+                "TIN": "TEMPORARY_OUTPUT",
+                "VERTICES": "TEMPORARY_OUTPUT",
+                "RASTER": str(tmp_path / "level.tif"),
+                "MESH": str(tmp_path / "level.2dm"),
+            },
+        )
+        assert made["TIN"].featureCount() == made["N_FACES"]
+        assert made["VERTICES"].featureCount() == made["N_VERTICES"]
+        area = sum(feature.geometry().area() for feature in made["TIN"].getFeatures())
+        assert area == pytest.approx(590 * 790)
+        raster = QgsRasterLayer(made["RASTER"], "level")
+        assert (raster.width(), raster.height()) == (80, 60)
+        mesh = QgsMeshLayer(made["MESH"], "mesh", "mdal")
+        assert mesh.isValid()
+        assert mesh.dataProvider().faceCount() == made["N_FACES"]
+
+    def test_the_raster_of_the_finest_level_is_the_dem(self, run, pyramid, tmp_path):
+        made = run(
+            "extractlevel",
+            {"INPUT": pyramid["OUTPUT"], "LEVEL": 5, "RASTER": str(tmp_path / "finest.tif")},
+        )
+        back = run("reconstruct", {"INPUT": pyramid["OUTPUT"], "DEM": str(tmp_path / "dem.tif")})
+        assert read_raster(made["RASTER"])["bytes"] == read_raster(back["DEM"])["bytes"]
+        assert made["RMSE_SURFACE"] == pytest.approx(0.0, abs=1e-9)
+
+    def test_a_level_that_is_not_there(self, refused, pyramid):
+        message = refused(
+            "extractlevel", {"INPUT": pyramid["OUTPUT"], "LEVEL": 9, "TIN": "TEMPORARY_OUTPUT"}
+        )
+        assert "0 (coarsest) to 5" in message
+
+    def test_a_geopackage_that_is_no_pyramid(self, refused, run, tmp_path):
+        import processing
+
+        layer = point_layer(survey(10))
+        path = str(tmp_path / "other.gpkg")
+        processing.run("native:savefeatures", {"INPUT": layer, "OUTPUT": path})
+        message = refused("extractlevel", {"INPUT": path, "TIN": "TEMPORARY_OUTPUT"})
+        assert "pyramid" in message
+
+    def test_details_are_all_the_vertices_that_went(self, run, pyramid):
+        made = run("detaillayers", {"INPUT": pyramid["OUTPUT"], "OUTPUT": "TEMPORARY_OUTPUT"})
+        went = pyramid["N_VERTICES"] - pyramid["COARSE_VERTICES"]
+        assert made["N_DETAILS"] == went == made["OUTPUT"].featureCount()
+        assert {f["level"] for f in made["OUTPUT"].getFeatures()} == set(range(5))
+        fewer = run(
+            "detaillayers",
+            {
+                "INPUT": pyramid["OUTPUT"],
+                "OUTPUT": "TEMPORARY_OUTPUT",
+                "FIRST_LEVEL": 1,
+                "LAST_LEVEL": 2,
+                "MIN_MAGNITUDE": 1.0,
+            },
+        )
+        rows = list(fewer["OUTPUT"].getFeatures())
+        assert {f["level"] for f in rows} == {1, 2}
+        assert min(f["magnitude"] for f in rows) >= 1.0
+
+    def test_outputs_open_styled(self, run, pyramid, tmp_path):
+        import processing
+        from qgis.core import QgsProcessingContext, QgsProject
+
+        project = QgsProject.instance()
+        context = QgsProcessingContext()
+        context.setProject(project)
+        processing.runAndLoadResults(
+            "terrainwavelets:detaillayers",
+            {"INPUT": pyramid["OUTPUT"], "OUTPUT": "TEMPORARY_OUTPUT"},
+            context=context,
+        )
+        processing.runAndLoadResults(
+            "terrainwavelets:extractlevel",
+            {
+                "INPUT": pyramid["OUTPUT"],
+                "TIN": "TEMPORARY_OUTPUT",
+                "MESH": str(tmp_path / "mesh.2dm"),
+            },
+            context=context,
+        )
+        processing.runAndLoadResults(
+            "terrainwavelets:reconstruct",
+            {"INPUT": pyramid["OUTPUT"], "DEM": str(tmp_path / "dem.tif")},
+            context=context,
+        )
+        layers = {layer.name(): layer for layer in project.mapLayers().values()}
+        assert layers["Details by level"].renderer().type() == "categorizedSymbol"
+        assert layers["TIN of the level"].renderer().type() == "graduatedSymbol"
+        assert layers["Reconstructed DEM"].renderer().type() == "hillshade"
+        assert layers["mesh"].crs().authid() == "EPSG:2154"
+        assert all(layer.crs().isValid() for layer in layers.values())
+        project.clear()
+
+
+class TestPointsAndTins:
+    def test_points_with_attributes_breaklines_clip_and_locks(self, run, tmp_path):
+        xyz = survey()
+        rows = [(int(x > 700500), int(y < 6600010)) for x, y, _ in xyz]
+        layer = point_layer(xyz, fields=("kind:integer", "lock:integer"), rows=rows)
+        lines = wkt_layer(
+            "LineString",
+            [
+                "LineString (700100 6600500, 700900 6600500)",
+                "LineString (700500 6599000, 700500 6602000)",
+            ],
+        )
+        polygon = (
+            "Polygon ((700050 6600050, 700950 6600050, 700950 6600950, 700500 6600700, "
+            "700050 6600950, 700050 6600050))"
+        )
+        clip = wkt_layer("Polygon", [polygon])
+        made = run(
+            "analysetin",
+            {
+                "INPUT": layer,
+                "ATTRIBUTES": ["kind"],
+                "LOCK_FIELD": "lock",
+                "BREAKLINES": lines,
+                "CLIP": clip,
+                "OUTPUT": str(tmp_path / "p.gpkg"),
+                "COARSE_TIN": "TEMPORARY_OUTPUT",
+            },
+        )
+        triangles = [feature.geometry() for feature in made["COARSE_TIN"].getFeatures()]
+        clip_geometry = next(clip.getFeatures()).geometry()
+        assert sum(t.area() for t in triangles) == pytest.approx(clip_geometry.area())
+        # The breaklines are edges still, also at the coarsest level: no triangle straddles them.
+        for triangle in triangles:
+            ys = [p.y() for p in triangle.vertices()]
+            xs = [p.x() for p in triangle.vertices()]
+            assert not (min(xs) < 700499 and max(xs) > 700501 and min(ys) < 6600700)
+            inside = min(xs) >= 700100 - 1e-6 and max(xs) <= 700900 + 1e-6
+            assert not (inside and min(ys) < 6600499 and max(ys) > 6600501)
+
+    def test_a_field_gives_the_elevation_and_a_selection_is_respected(self, run, tmp_path):
+        import processing
+        from qgis.core import QgsProcessingFeatureSourceDefinition, QgsProject
+
+        xyz = survey(500)
+        layer = point_layer(
+            np.column_stack([xyz[:, :2], np.zeros(500)]),
+            fields=("height:double",),
+            rows=[(float(z),) for z in xyz[:, 2]],
+        )
+        layer.selectByIds(list(range(1, 301)))
+        QgsProject.instance().addMapLayer(layer)
+        try:
+            made = processing.run(
+                "terrainwavelets:analysetin",
+                {
+                    "INPUT": QgsProcessingFeatureSourceDefinition(layer.id(), True),
+                    "Z_FIELD": "height",
+                    "OUTPUT": str(tmp_path / "p.gpkg"),
+                },
+            )
+        finally:
+            QgsProject.instance().removeMapLayer(layer.id())
+        assert made["N_VERTICES"] == 300
+        back = run("reconstruct", {"INPUT": made["OUTPUT"], "TIN": "TEMPORARY_OUTPUT"})
+        top = max(p.z() for f in back["TIN"].getFeatures() for p in f.geometry().vertices())
+        assert top == pytest.approx(xyz[:300, 2].max())
+
+    def test_triangles_come_back_as_they_were(self, run, tmp_path):
+        first = run(
+            "analysetin",
+            {
+                "INPUT": point_layer(survey(400)),
+                "LEVELS": 2,
+                "OUTPUT": str(tmp_path / "a.gpkg"),
+                "COARSE_TIN": "TEMPORARY_OUTPUT",
+            },
+        )
+        second = run(
+            "analysetin", {"INPUT": first["COARSE_TIN"], "OUTPUT": str(tmp_path / "b.gpkg")}
+        )
+        assert second["N_FACES"] == first["COARSE_FACES"]
+        back = run("reconstruct", {"INPUT": second["OUTPUT"], "TIN": "TEMPORARY_OUTPUT"})
+
+        def corners(layer):
+            return sorted(
+                sorted(
+                    (round(p.x(), 6), round(p.y(), 6), round(p.z(), 6))
+                    for p in f.geometry().vertices()
+                )
+                for f in layer.getFeatures()
+            )
+
+        assert corners(back["TIN"]) == corners(first["COARSE_TIN"])
+
+    def test_refusals_say_what_to_do(self, refused, tmp_path):
+        out = str(tmp_path / "p.gpkg")
+        far = wkt_layer("Polygon", ["Polygon ((0 0, 1 0, 1 1, 0 0))"])
+        points = point_layer(survey(100))
+        assert "overlap" in refused("analysetin", {"INPUT": points, "CLIP": far, "OUTPUT": out})
+        assert refused("analysetin", {"INPUT": point_layer([]), "OUTPUT": out})
+        flat = wkt_layer("Point", ["Point (1 1)", "Point (2 1)", "Point (1 2)"])
+        assert "field" in refused("analysetin", {"INPUT": flat, "OUTPUT": out})
+        line = point_layer([(700000 + k, 6600000 + k, k) for k in range(10)])
+        assert "line" in refused("analysetin", {"INPUT": line, "OUTPUT": out})
+        square = wkt_layer("PolygonZ", ["PolygonZ ((0 0 1, 1 0 1, 1 1 1, 0 1 1, 0 0 1))"])
+        assert "triangle" in refused("analysetin", {"INPUT": square, "OUTPUT": out})
+        assert not (tmp_path / "p.gpkg").exists()
+
+    def test_breaklines_in_another_crs_are_transformed(self, run, tmp_path):
+        from qgis.core import (
+            QgsCoordinateReferenceSystem,
+            QgsCoordinateTransform,
+            QgsGeometry,
+            QgsProject,
+        )
+
+        geometry = QgsGeometry.fromWkt("LineString (700100 6600500, 700900 6600500)")
+        to_degrees = QgsCoordinateTransform(
+            QgsCoordinateReferenceSystem("EPSG:2154"),
+            QgsCoordinateReferenceSystem("EPSG:4326"),
+            QgsProject.instance(),
+        )
+        geometry.transform(to_degrees)
+        made = run(
+            "analysetin",
+            {
+                "INPUT": point_layer(survey()),
+                "BREAKLINES": wkt_layer("LineString", [geometry.asWkt(12)], "EPSG:4326"),
+                "OUTPUT": str(tmp_path / "p.gpkg"),
+                "COARSE_TIN": "TEMPORARY_OUTPUT",
+            },
+        )
+        corners = [p for f in made["COARSE_TIN"].getFeatures() for p in f.geometry().vertices()]
+        ends = [p for p in corners if abs(p.y() - 6600500) < 0.01]
+        assert min(p.x() for p in ends) == pytest.approx(700100, abs=0.01)
+        assert max(p.x() for p in ends) == pytest.approx(700900, abs=0.01)
