@@ -50,6 +50,7 @@ def read_dem(path: str | os.PathLike[str], *, band: int | None = None) -> tuple[
     NaN or infinite, tagged or not.
     """
     import rasterio
+    from rasterio._err import CPLE_BaseError
     from rasterio.errors import NotGeoreferencedWarning, RasterioError
 
     _require_file(path)
@@ -59,7 +60,7 @@ def read_dem(path: str | os.PathLike[str], *, band: int | None = None) -> tuple[
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(path) as dataset:
                 return _read_band(dataset, Path(path), band)
-    except RasterioError as error:
+    except (RasterioError, CPLE_BaseError) as error:
         raise InputFileError(f"{path}: {_reason(error)}") from error
 
 
@@ -82,6 +83,7 @@ def write_dem(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
     """
     import rasterio
     from rasterio.crs import CRS
+    from rasterio._err import CPLE_BaseError
     from rasterio.errors import NotGeoreferencedWarning, RasterioError
 
     driver = _driver_of(path)
@@ -105,7 +107,8 @@ def write_dem(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
                     _fill(dataset, dem)
             else:
                 _write_copy(path, profile, dem)
-    except (RasterioError, ValueError) as error:
+    # GDAL's own errors reach us bare where rasterio only hands a call through.
+    except (RasterioError, CPLE_BaseError, ValueError) as error:
         raise OutputFileError(
             f"{path}: GDAL cannot write this as {driver} ({error}); use a name ending in .tif."
         ) from error
@@ -115,6 +118,7 @@ def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
     """Write a DEM as a cloud-optimised GeoTIFF (tiled, deflate, with overviews)."""
     import rasterio
     from rasterio.crs import CRS
+    from rasterio._err import CPLE_BaseError
     from rasterio.errors import RasterioError
 
     n_rows, n_columns = dem.geometry.shape
@@ -133,7 +137,7 @@ def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
     try:
         with rasterio.open(path, "w", **profile) as dataset:
             _fill(dataset, dem)
-    except (RasterioError, ValueError) as error:
+    except (RasterioError, CPLE_BaseError, ValueError) as error:
         raise OutputFileError(
             f"{path}: GDAL cannot write this as a cloud-optimised GeoTIFF ({error})."
         ) from error
@@ -259,7 +263,11 @@ def _fill(dataset: DatasetWriter, dem: Dem) -> None:
 
 
 def _write_copy(path: str | os.PathLike[str], profile: dict[str, Any], dem: Dem) -> None:
-    """Write through memory, for the formats that GDAL can only copy to."""
+    """Write through memory, for the formats that GDAL can only copy to.
+
+    Some of them lose what they cannot hold without a word, so the result is read again.
+    """
+    import rasterio
     from rasterio.io import MemoryFile
     from rasterio.shutil import copy
 
@@ -269,6 +277,9 @@ def _write_copy(path: str | os.PathLike[str], profile: dict[str, Any], dem: Dem)
             _fill(dataset, dem)
         with memory.open() as dataset:
             copy(dataset, os.fspath(path), driver=driver)
+    with rasterio.open(path) as dataset:
+        if not np.array_equal(dataset.read(1), dem.values, equal_nan=dem.values.dtype.kind == "f"):
+            raise ValueError("the format changes the values")
 
 
 def _driver_of(path: str | os.PathLike[str]) -> str:

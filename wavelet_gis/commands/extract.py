@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     raster = parser.add_argument_group("raster")
     raster.add_argument(
         "--cell-size",
-        type=float,
+        type=length,
         metavar="SIZE",
         help="in the unit of the CRS; by default the grid of the input, and for points their "
         "mean spacing at this level",
@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         inputs=(arguments.file,),
     )
     is_raster = Path(arguments.output).suffix.lower() in RASTER_SUFFIXES
-    if not is_raster and (arguments.cell_size or arguments.attribute or arguments.cog):
+    if not is_raster and (arguments.cell_size is not None or arguments.attribute or arguments.cog):
         raise OptionError(
             "--cell-size, --attribute and --cog are for rasters; give an output ending in .tif."
         )
@@ -77,6 +77,14 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"{shape}; {arguments.output}"
     )
     console.figures({"output": str(arguments.output), **sizes})
+
+
+def length(text: str) -> float:
+    """Return a length from the command line."""
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is no length above 0")
+    return value
 
 
 def write_tin(
@@ -103,41 +111,13 @@ def write_raster(
     """Write a mesh of the pyramid as a raster; return its size and the cells without data."""
     import numpy as np
 
-    from wavelet_core.errors import OptionError
-    from wavelet_gis.dem import Dem, RasterSource
     from wavelet_gis.raster import write_cog, write_dem
-    from wavelet_gis.rasterise import geometry_over, rasterise
+    from wavelet_gis.surface import surface_dem
 
-    in_file = record.file_mesh(mesh)
-    values = None
-    if arguments.attribute:
-        if arguments.attribute not in mesh.attribute_names:
-            raise OptionError(
-                f"the pyramid has no attribute {arguments.attribute!r}; it has "
-                f"{', '.join(mesh.attribute_names) or 'none'}."
-            )
-        values = in_file.attributes[:, mesh.attribute_names.index(arguments.attribute)]
-    low, high = in_file.vertices.min(axis=0), in_file.vertices.max(axis=0)
-    source = record.source
-    if isinstance(source, RasterSource) and arguments.cell_size is None:
-        geometry = source.geometry
-    else:
-        area = (high[0] - low[0]) * (high[1] - low[1])
-        size = arguments.cell_size or float(np.sqrt(area / mesh.n_vertices))
-        geometry = geometry_over((low[0], low[1], high[0], high[1]), size)
-    grid = rasterise(in_file, geometry, values)
-    is_wide = isinstance(source, RasterSource) and source.dtype == np.float64
-    grid = grid if is_wide else grid.astype(np.float32)
-    covered = np.isfinite(grid)
-    nodata = source.nodata if isinstance(source, RasterSource) else None
-    usable = nodata is not None and abs(float(nodata)) <= float(np.finfo(grid.dtype).max)
-    tag = float(nodata) if usable and nodata is not None else float("nan")
-    grid[~covered] = tag
-    profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
-    dem = Dem(grid, covered, geometry, tag, profile=profile)
+    dem = surface_dem(record, mesh, cell_size=arguments.cell_size, attribute=arguments.attribute)
     (write_cog if arguments.cog else write_dem)(path, dem, record.system.wkt)
     return {
-        "n_rows": geometry.shape[0],
-        "n_columns": geometry.shape[1],
-        "n_uncovered": int(np.count_nonzero(~covered)),
+        "n_rows": dem.geometry.shape[0],
+        "n_columns": dem.geometry.shape[1],
+        "n_uncovered": int(np.count_nonzero(~dem.valid)),
     }
