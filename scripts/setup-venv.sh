@@ -19,7 +19,7 @@ if [ ! -x "$venv/bin/python" ]; then
         [ "$(id -u)" = 0 ] || refuse "$python lacks the venv module; install it: sudo apt-get install $version"
         printf 'setup: installing %s\n' "$version" >&2
         apt-get update -qq
-        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$version" >&2
+        DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$version" >/dev/null
     fi
     printf 'setup: virtual environment in %s, with %s\n' "$venv" "$("$python" --version)" >&2
     "$python" -m venv "$venv"
