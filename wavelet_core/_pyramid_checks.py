@@ -40,6 +40,8 @@ def check_parts(
         n_vertices = _check_step(level, step, n_vertices, len(names))
     _require(faces.ndim == 2 and faces.shape[1] == 3, f"faces of shape {faces.shape}")
     _require(_in_range(faces, n_vertices), "faces with a vertex out of range")
+    a, b, c = faces.T
+    _require(not ((a == b) | (b == c) | (c == a)).any(), "a face with a vertex twice")
     if signal == "z":
         _require(
             horizontal is not None
