@@ -95,7 +95,7 @@ def _require_not_collinear(plan: FloatArray) -> None:
     centred = plan - plan.mean(axis=0)
     covariance = centred.T @ centred
     smallest, largest = np.linalg.eigvalsh(covariance)
-    if largest == 0 or smallest <= 1e-18 * largest:
+    if largest == 0 or smallest <= 1e-15 * largest:  # eigenvalues err by eps * largest
         raise MeshError("all points lie on one line in plan; a surface needs more than that.")
 
 
