@@ -35,8 +35,8 @@ _ALIASES: dict[str, tuple[str, ...]] = {
     "returns": ("return_number", "number_of_returns"),
 }
 
-#: VLRs that describe how points were compressed or arranged, wrong in any file written anew.
-_STALE_VLRS = {("laszip encoded", 22204), ("copc", 1), ("copc", 1000)}
+#: Owners of VLRs on how points are compressed or arranged, wrong in any file written anew.
+_STALE_OWNERS = ("laszip encoded", "copc")
 
 #: Point formats with references to waveform packets.
 _WAVEFORM_FORMATS = (4, 5, 9, 10)
@@ -139,7 +139,7 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
     header = _header_from(laspy, cloud.header)
     stored_date = bytes(cloud.header[_CREATION_DATE])
     # Taken out one by one: setting the list anew would make laspy rewrite the other records.
-    for stale in [v for v in header.vlrs if (v.user_id, v.record_id) in _STALE_VLRS]:
+    for stale in [v for v in header.vlrs if v.user_id in _STALE_OWNERS]:
         header.vlrs.remove(stale)
     computed = [a for a in cloud.attributes if a.dimension == HEIGHT_ABOVE_GROUND]
     for attribute in computed:
@@ -368,7 +368,7 @@ def _evlr_bytes(name: str, header: LasHeader) -> NDArray[np.uint8]:
     if evlrs is None or len(evlrs) == 0:
         return np.empty(0, np.uint8)
     stream = io.BytesIO()
-    kept = type(evlrs)(v for v in evlrs if (v.user_id, v.record_id) not in _STALE_VLRS)
+    kept = type(evlrs)(v for v in evlrs if v.user_id not in _STALE_OWNERS)
     try:
         kept.write_to(stream, as_extended=True, encoding_errors="ignore")
     except (ValueError, OverflowError) as error:

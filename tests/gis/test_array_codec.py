@@ -21,9 +21,7 @@ ANY_ARRAY = st.sampled_from(["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4
 def round_trip(array, pool=None):
     chunks = list(encode_array(array, pool))
     header = header_of(array)
-    header = ArrayHeader.checked(
-        header.dtype, list(header.shape), header.filter, header.chunk_rows
-    )
+    header = ArrayHeader.checked(header.dtype, list(header.shape), header.filter, header.chunk_rows)
     assert len(chunks) == header.n_chunks
     return decode_array(header, chunks, sum(map(len, chunks)), pool)
 

@@ -17,7 +17,9 @@ from wavelet_gis.crs import (
 from wavelet_gis.crs_lookup import coordinate_system, epsg_of
 from wavelet_gis.errors import CrsError
 
-DEGREES = CoordinateSystem(wkt="x", name="WGS 84", kind="geographic", horizontal_unit=math.radians(1))
+DEGREES = CoordinateSystem(
+    wkt="x", name="WGS 84", kind="geographic", horizontal_unit=math.radians(1)
+)
 
 
 def test_metres_per_degree_are_those_of_the_ellipsoid():
