@@ -10,7 +10,7 @@ from qgis.core import (
 )
 
 from . import styles
-from .pyramids import crs_of
+from .pyramids import cell_size, crs_of
 
 
 def write_raster(algorithm, parameters, name, context, record, mesh, feedback) -> str:
@@ -20,13 +20,11 @@ def write_raster(algorithm, parameters, name, context, record, mesh, feedback) -
     """
     from wavelet_gis.surface import surface_dem
 
-    from .rasters import write_dem
+    from .raster_output import write_dem
 
     path = algorithm.parameterAsOutputLayer(parameters, name, context)
-    cell_size = None
-    if parameters.get("CELL_SIZE") is not None:
-        cell_size = algorithm.parameterAsDouble(parameters, "CELL_SIZE", context) or None
-    write_dem(path, surface_dem(record, mesh, cell_size=cell_size), crs_of(record), feedback)
+    size = cell_size(algorithm, parameters, context)
+    write_dem(path, surface_dem(record, mesh, cell_size=size), crs_of(record), feedback)
     styles.style_output(context, path, styles.HILLSHADE)
     return path
 

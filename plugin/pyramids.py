@@ -46,6 +46,13 @@ def crs_of(record) -> QgsCoordinateReferenceSystem:
     return QgsCoordinateReferenceSystem.fromWkt(record.system.wkt)
 
 
+def cell_size(algorithm, parameters, context):
+    """Return the parameter CELL_SIZE, or None where it is empty or 0."""
+    if parameters.get("CELL_SIZE") is None:
+        return None
+    return algorithm.parameterAsDouble(parameters, "CELL_SIZE", context) or None
+
+
 def checked_level(record, level: int) -> int:
     """Return a level that the pyramid has.
 

@@ -1,4 +1,4 @@
-"""Raster layers to ``Dem`` arrays and back, through QGIS and GDAL.
+"""Raster layers to ``Dem`` arrays, through QGIS and GDAL.
 
 Layers of QGIS's GDAL provider are read with GDAL itself: QGIS scales values, warps rotated rasters
 and gives the cell size as extent over count, and none of that comes back bit for bit. All other
@@ -8,7 +8,6 @@ providers are read block by block through QGIS.
 from __future__ import annotations
 
 import math
-import os
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,9 +15,7 @@ import numpy as np
 from osgeo import gdal
 from qgis.core import (
     Qgis,
-    QgsCoordinateReferenceSystem,
     QgsProcessingException,
-    QgsRasterFileWriter,
     QgsRasterIterator,
     QgsRasterRange,
 )
@@ -26,10 +23,10 @@ from qgis.core import (
 from .gdal_errors import without_exceptions
 from .translation import tr
 
-#: Rows read or written between two looks at the cancel button.
+#: Cells read or written between two looks at the cancel button.
 STRIP_CELLS = 1 << 21
 
-_GDAL_TYPES = {
+GDAL_TYPES = {
     "|u1": gdal.GDT_Byte,
     "<u2": gdal.GDT_UInt16,
     "<i2": gdal.GDT_Int16,
@@ -42,7 +39,7 @@ _GDAL_TYPES = {
     "<i8": getattr(gdal, "GDT_Int64", None),
     "<u8": getattr(gdal, "GDT_UInt64", None),
 }
-_NUMPY_TYPES = {code: np.dtype(text) for text, code in _GDAL_TYPES.items() if code is not None}
+_NUMPY_TYPES = {code: np.dtype(text) for text, code in GDAL_TYPES.items() if code is not None}
 _QGIS_TYPES = {
     Qgis.DataType.Byte: "|u1",
     Qgis.DataType.UInt16: "<u2",
@@ -153,7 +150,7 @@ def _read_with_gdal(raster: RasterInput, feedback):
     mask_band = band.GetMaskBand()
     values = np.empty((n_rows, n_columns), dtype=dtype)
     valid = np.ones((n_rows, n_columns), dtype=bool)
-    for start, stop in _strips(n_rows, n_columns, feedback):
+    for start, stop in strips(n_rows, n_columns, feedback):
         window = (0, start, n_columns, stop - start)
         values[start:stop] = _array(band.ReadRaster(*window), dtype, n_columns, raster)
         if raster.uses_nodata:
@@ -224,79 +221,7 @@ def _with_holes(dem, raster: RasterInput):
     return dem
 
 
-def write_dem(path: str, dem, crs, feedback) -> None:
-    """Write a ``Dem`` as a raster; the suffix chooses the format.
-
-    Parameters
-    ----------
-    path : str
-        Where; the file appears whole or not at all.
-    dem : Dem
-    crs : QgsCoordinateReferenceSystem
-    feedback : QgsProcessingFeedback
-        Asked for cancel between strips.
-
-    Raises
-    ------
-    QgsProcessingException
-        A format that GDAL cannot write, or a full disk.
-    """
-    from wavelet_gis.atomic import new_file
-
-    driver_name = QgsRasterFileWriter.driverForExtension(os.path.splitext(path)[1].lstrip("."))
-    with new_file(path, overwrite=True) as scratch, without_exceptions(gdal):
-        options = _creation_options(dem) if driver_name == "GTiff" else []
-        first = gdal.GetDriverByName("GTiff" if driver_name == "GTiff" else "MEM")
-        last = gdal.GetDriverByName(driver_name) if driver_name else None
-        gdal_type = _GDAL_TYPES.get(dem.values.dtype.newbyteorder("<").str)
-        if last is None or gdal_type is None:
-            raise QgsProcessingException(
-                tr(
-                    "{}: no raster of {} can be written under this name; use one ending in .tif."
-                ).format(path, dem.values.dtype)
-            )
-        n_rows, n_columns = dem.geometry.shape
-        name = str(scratch) if first is last or driver_name == "GTiff" else ""
-        dataset = first.Create(name, n_columns, n_rows, 1, gdal_type, options)
-        is_written = dataset is not None and _fill(dataset, dem, crs, feedback)
-        if is_written and driver_name != "GTiff":
-            copy = last.CreateCopy(str(scratch), dataset)
-            is_written = copy is not None
-            copy = None
-        dataset = None  # closes the file
-        if not is_written:
-            raise QgsProcessingException(
-                tr(
-                    "{}: GDAL could not write this raster ({}); check the disk and the name."
-                ).format(path, gdal.GetLastErrorMsg())
-            )
-
-
-def _fill(dataset, dem, crs, feedback) -> bool:
-    a, b, c, d, e, f = dem.geometry.transform
-    dataset.SetGeoTransform((c, a, b, f, d, e))
-    if crs.isValid():
-        dataset.SetProjection(crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL))
-    for key, value in dict(dem.profile.get("tags", {})).items():
-        dataset.SetMetadataItem(str(key), str(value))
-    band = dataset.GetRasterBand(1)
-    if dem.nodata is not None:
-        band.SetNoDataValue(dem.nodata)
-    if dem.scale != 1.0 or dem.offset != 0.0:
-        band.SetScale(dem.scale)
-        band.SetOffset(dem.offset)
-    if dem.profile.get("unit"):
-        band.SetUnitType(str(dem.profile["unit"]))
-    n_rows, n_columns = dem.geometry.shape
-    for start, stop in _strips(n_rows, n_columns, feedback):
-        strip = np.ascontiguousarray(dem.values[start:stop])
-        if band.WriteRaster(0, start, n_columns, stop - start, strip.tobytes()) != 0:
-            return False
-    dataset.FlushCache()
-    return True
-
-
-def _strips(n_rows: int, n_columns: int, feedback):
+def strips(n_rows: int, n_columns: int, feedback):
     """Yield ``(start, stop)`` rows, with a look at the cancel button before each."""
     from wavelet_core.errors import Cancelled
 
@@ -346,22 +271,6 @@ def _profile(dataset, band) -> dict:
         "band": band.GetBand(),
         "unit": band.GetUnitType(),
     }
-
-
-def _creation_options(dem) -> list[str]:
-    options = dict(dem.profile.get("options", {}))
-    # Lossless, and a third of the size: what a new raster gets.
-    options.setdefault("compress", "deflate")
-    if options["compress"] in ("lzw", "deflate", "zstd"):
-        options.setdefault("predictor", 3 if dem.values.dtype.kind == "f" else 2)
-    options.setdefault("bigtiff", "IF_SAFER")
-    names = ("compress", "predictor", "tiled", "blockxsize", "blockysize", "bigtiff")
-    values = {name: options[name] for name in names if options.get(name) is not None}
-    if not values.get("tiled"):
-        values.pop("tiled", None)
-        values.pop("blockxsize", None)
-        values.pop("blockysize", None)
-    return [f"{name.upper()}={'YES' if value is True else value}" for name, value in values.items()]
 
 
 def _closed_ends(bounds) -> tuple[bool, bool]:

@@ -47,9 +47,12 @@ def uninstall() -> None:
 
 
 def _show(message, category, filename, lineno, file=None, line=None):
+    from wavelet_core.errors import SlowFallbackWarning
     from wavelet_gis.errors import TerrainWarning
 
     feedback = getattr(_feedbacks, "current", None)
+    if feedback is not None and issubclass(category, SlowFallbackWarning):
+        return  # told already, with the remedy for this platform
     if feedback is not None and issubclass(category, TerrainWarning):
         text = str(message)
         feedback.pushWarning(text[:1].upper() + text[1:])

@@ -8,7 +8,16 @@ from .analyse_point_cloud import AnalysePointCloud
 from .analyse_tin import AnalyseTin
 from .detail_layers import DetailLayers
 from .extract_level import ExtractLevel
+from .quality_report import QualityReport
 from .reconstruct import Reconstruct
 
 #: In the order of the toolbox's groups.
-ALGORITHMS = (AnalyseDem, AnalysePointCloud, AnalyseTin, ExtractLevel, Reconstruct, DetailLayers)
+ALGORITHMS = (
+    AnalyseDem,
+    AnalysePointCloud,
+    AnalyseTin,
+    ExtractLevel,
+    Reconstruct,
+    DetailLayers,
+    QualityReport,
+)

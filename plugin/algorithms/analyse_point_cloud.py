@@ -135,7 +135,7 @@ class AnalysePointCloud(AnalysisAlgorithm):
 
         path = self.parameterAsFile(parameters, "INPUT", context)
         feedback.setProgressText(self.tr("Reading the points"))
-        cloud, wkt, unit = read_cloud(
+        cloud, place = read_cloud(
             path,
             attributes=self._attributes(parameters, context),
             classes=self._classes(parameters, context),
@@ -143,8 +143,8 @@ class AnalysePointCloud(AnalysisAlgorithm):
         )
         require_running(feedback)
         crs = self.parameterAsCrs(parameters, "CRS", context)
-        if not crs.isValid() and wkt:
-            crs = QgsCoordinateReferenceSystem.fromWkt(wkt)
+        if not crs.isValid() and place.wkt:
+            crs = QgsCoordinateReferenceSystem.fromWkt(place.wkt)
             if not crs.isValid():
                 raise QgsProcessingException(
                     self.tr("{}: QGIS does not understand the CRS in the file; choose one.").format(
@@ -156,7 +156,8 @@ class AnalysePointCloud(AnalysisAlgorithm):
             path,
             cloud,
             coordinate_system(crs),
-            vertical_unit(self, parameters, context) or unit,
+            vertical_unit(self, parameters, context) or place.vertical_unit,
+            fault=place.fault,
         )
 
     def _attributes(self, parameters, context):

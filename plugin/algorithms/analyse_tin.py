@@ -115,7 +115,9 @@ class AnalyseTin(AnalysisAlgorithm):
 
     def packages(self, parameters, context):
         """Return the Delaunay library, where points are to be triangulated."""
-        return (dependencies.PYTHONCDT,)
+        source = self.parameterAsSource(parameters, "INPUT", context)
+        is_triangles = source is not None and _holds_polygons(source)
+        return () if is_triangles else (dependencies.PYTHONCDT,)
 
     def prepare(self, parameters, context, feedback):
         """Take the sources, in the thread that the layers live in."""
@@ -135,10 +137,7 @@ class AnalyseTin(AnalysisAlgorithm):
         unit = vertical_unit(self, parameters, context)
         name = self.source.sourceName()
         self.locked = None
-        if (
-            QgsWkbTypes.geometryType(self.source.wkbType())
-            == QgsWkbTypes.GeometryType.PolygonGeometry
-        ):
+        if _holds_polygons(self.source):
             mesh, frame, unit = self._mesh_of_triangles(system, unit, feedback)
         else:
             points = self._points(parameters, context, feedback)
@@ -226,3 +225,8 @@ class AnalyseTin(AnalysisAlgorithm):
         if self.parameterAsBool(parameters, "LOCK_BREAKLINES", context):
             self.locked = tin.is_marked | tin.is_on_line
         return tin.mesh
+
+
+def _holds_polygons(source) -> bool:
+    kind = QgsWkbTypes.geometryType(source.wkbType())
+    return kind == QgsWkbTypes.GeometryType.PolygonGeometry

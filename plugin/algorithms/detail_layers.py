@@ -8,6 +8,7 @@ from qgis.core import (
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterNumber,
+    QgsProcessingParameterRasterDestination,
 )
 
 from ..design import DOUBLE, INTEGER
@@ -76,6 +77,30 @@ class DetailLayers(PyramidAlgorithm):
                 "channel, <i>magnitude</i> the length of the detail vector."
             ),
         )
+        self.add(
+            QgsProcessingParameterRasterDestination(
+                "ENERGY", self.tr("Energy by level"), optional=True, createByDefault=False
+            ),
+            self.tr(
+                "A raster with one band a level: the root mean square detail around each place, in "
+                "the unit of elevation. It maps at which scale the terrain is rough."
+            ),
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "CELL_SIZE",
+                self.tr("Cell size of the raster"),
+                DOUBLE,
+                None,
+                optional=True,
+                minValue=0.0,
+            ),
+            self.tr(
+                "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
+                "from, and for points their mean spacing."
+            ),
+            advanced=True,
+        )
         self.addOutput(QgsProcessingOutputNumber("N_DETAILS", self.tr("Number of points")))
         self.addOutput(QgsProcessingOutputNumber("MAX_MAGNITUDE", self.tr("Largest magnitude")))
 
@@ -129,6 +154,26 @@ class DetailLayers(PyramidAlgorithm):
             rows = np.flatnonzero(magnitude >= smallest)
             n_details += vectors.add_layer(sink, layer, feedback, rows)
             largest = max(largest, float(magnitude.max(initial=0.0)))
-            feedback.setProgress(100 * (level - first + 1) / (last - first + 1))
+            feedback.setProgress(60 * (level - first + 1) / (last - first + 1))
         styles.style_output(context, destination, styles.DETAILS)
-        return {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
+        results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
+        if parameters.get("ENERGY"):
+            results["ENERGY"] = self._write_energy(parameters, context, record, feedback)
+        return results
+
+    def _write_energy(self, parameters, context, record, feedback):
+        from wavelet_gis.bands import value_bands
+        from wavelet_gis.details import band_names, energy_columns
+
+        from ..bridge import progress
+        from ..pyramids import cell_size, crs_of
+        from ..raster_output import write_bands
+
+        path = self.parameterAsOutputLayer(parameters, "ENERGY", context)
+        feedback.setProgressText(self.tr("Gathering the energy of each level"))
+        columns = energy_columns(record, progress=progress(feedback, 0.6, 0.9))
+        finest = record.pyramid.synthesise()
+        size = cell_size(self, parameters, context)
+        bands = value_bands(record, finest, columns, band_names(record), size)
+        write_bands(path, bands, crs_of(record), feedback)
+        return path

@@ -109,13 +109,13 @@ class Reconstruct(PyramidAlgorithm):
         return results
 
     def _write_dem(self, parameters, context, record, finest, crs, feedback, results):
-        from .. import rasters, styles
+        from .. import raster_output, styles
 
         path = self.parameterAsOutputLayer(parameters, "DEM", context)
         if not path:
             return
         dem = record.source.restore(finest, record.frame)
-        rasters.write_dem(path, dem, crs, feedback)
+        raster_output.write_dem(path, dem, crs, feedback)
         styles.style_output(context, path, styles.HILLSHADE)
         results["DEM"] = path
 
