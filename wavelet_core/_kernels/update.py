@@ -5,12 +5,16 @@ from ._jit import njit
 
 # The constant that Eq. 46 adds to the unlocked ring of one odd vertex, for one channel:
 # w/(N+1) + sum (p_m - mean p)/(N+1) s_m, which is Eq. 46 where p sums to 1 over the ring. Shifting
-# p rather than rescaling it keeps it bounded where the unlocked weights nearly cancel.
+# p rather than rescaling it keeps it bounded where the unlocked weights nearly cancel; since the
+# shifted weights sum to 0, a local origin changes nothing but the rounding, which large weights
+# would carry through the whole sequence.
 @njit
 def ring_constant(first, last, columns, weights, detail, locked, even, channel):
-    n_free, total = 0, 0.0
+    n_free, total, origin = 0, 0.0, 0.0
     for k in range(first, last):
         if not locked[columns[k]]:
+            if n_free == 0:
+                origin = even[columns[k], channel]
             n_free += 1
             total += weights[k]
     if n_free == 0:
@@ -19,7 +23,7 @@ def ring_constant(first, last, columns, weights, detail, locked, even, channel):
     for k in range(first, last):
         if not locked[columns[k]]:
             excess = weights[k] - total / n_free
-            constant += excess / (n_free + 1.0) * even[columns[k], channel]
+            constant += excess / (n_free + 1.0) * (even[columns[k], channel] - origin)
     return constant
 
 
