@@ -71,6 +71,14 @@ def coordinate_system(crs: QgsCoordinateReferenceSystem):
     )
 
 
+def is_geocentric(wkt: str) -> bool:
+    """Return whether a CRS has its origin in the middle of the earth."""
+    with without_exceptions(osr):
+        system = osr.SpatialReference()
+        system.ImportFromWkt(wkt)
+        return bool(system.IsGeocentric())
+
+
 def known_unit(name: str | None) -> str | None:
     """Return a unit as ``wavelet_gis`` names it, or None for one that is no length known to it."""
     from wavelet_gis.crs import vertical_unit_name

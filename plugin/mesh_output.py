@@ -25,7 +25,7 @@ def write_raster(algorithm, parameters, name, context, record, mesh, feedback) -
     path = algorithm.parameterAsOutputLayer(parameters, name, context)
     size = cell_size(algorithm, parameters, context)
     write_dem(path, surface_dem(record, mesh, cell_size=size), crs_of(record), feedback)
-    styles.style_output(context, path, styles.HILLSHADE)
+    styles.style_output(context, path, styles.style_hillshade)
     return path
 
 
@@ -45,5 +45,5 @@ def write_mesh_file(algorithm, parameters, name, context, record, mesh) -> str:
             QgsProcessingUtils.LayerHint.Mesh,
         )
         context.addLayerToLoadOnCompletion(path, details)
-        styles.style_output(context, path, styles.MESH)
+        styles.style_output(context, path, styles.set_mesh_crs)
     return path

@@ -24,6 +24,8 @@ class TerrainWaveletsPlugin:
         self.translator = _installed_translator()
         self.provider = TerrainWaveletsProvider()
         QgsApplication.processingRegistry().addProvider(self.provider)
+        # Models look their steps up in the registry, which has ours only from here on.
+        self.provider.refreshAlgorithms()
 
     def initGui(self):
         """Register the provider in QGIS with a window."""

@@ -11,7 +11,7 @@ from qgis.core import (
     QgsProcessingOutputNumber,
 )
 
-from .bridge import progress
+from .bridge import is_geocentric, progress
 from .translation import tr
 
 
@@ -35,15 +35,20 @@ def save(record, path: str, feedback, start: float, stop: float) -> None:
     with new_file(path, overwrite=True) as scratch:
         write_pyramid(scratch, record, progress(feedback, start, middle))
         layers = chain(coarse_layers(record), detail_layers(record))
-        add_layers(scratch, layers, record.system.wkt, feedback)
+        add_layers(scratch, layers, layer_wkt(record), feedback)
     progress(feedback, middle, stop)(1.0)
 
 
 def crs_of(record) -> QgsCoordinateReferenceSystem:
     """Return the CRS of a record's input; an invalid one where it had none."""
-    if record.system.wkt is None:
-        return QgsCoordinateReferenceSystem()
-    return QgsCoordinateReferenceSystem.fromWkt(record.system.wkt)
+    wkt = layer_wkt(record)
+    return QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
+
+
+def layer_wkt(record) -> str | None:
+    """Return the CRS for layers; None also for a geocentric one, in which no map is drawn."""
+    wkt = record.system.wkt
+    return None if wkt is None or is_geocentric(wkt) else wkt
 
 
 def cell_size(algorithm, parameters, context):

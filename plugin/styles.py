@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 
 from qgis.core import (
     QgsCategorizedSymbolRenderer,
@@ -87,23 +88,23 @@ def _apply(layer, qml: str) -> None:
     layer.importNamedStyle(document)
 
 
-# Processing keeps no reference to a post-processor, so these live as long as the module.
-TIN = _Style(style_tin)
-DETAILS = _Style(style_details)
-HILLSHADE = _Style(style_hillshade)
-MESH = _Style(set_mesh_crs)
+#: Post-processors that were handed out. Some versions of QGIS take them over, others do not, so
+#: these references keep them alive until they have surely been used.
+_handed_out = deque(maxlen=1000)
 
 
 def style_output(context, destination, style) -> None:
-    """Let ``destination`` open with ``style``, if it opens at all.
+    """Let ``destination`` open with a style, if it opens at all.
 
     Parameters
     ----------
     context : QgsProcessingContext
     destination : str
         As ``parameterAsSink`` or the output map names it.
-    style : _Style
-        ``TIN``, ``DETAILS``, ``HILLSHADE`` or ``MESH``.
+    style : callable
+        One of the functions here that take a layer.
     """
     if destination and context.willLoadLayerOnCompletion(destination):
-        context.layerToLoadOnCompletionDetails(destination).setPostProcessor(style)
+        processor = _Style(style)
+        _handed_out.append(processor)
+        context.layerToLoadOnCompletionDetails(destination).setPostProcessor(processor)

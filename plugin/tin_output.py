@@ -12,7 +12,7 @@ def write_tin(algorithm, parameters, name, context, record, level, feedback) -> 
     """Write the triangles of a level to the sink ``name`` and return where they are."""
     tin, _ = _level_layers(record, level)
     destination = _write(algorithm, parameters, name, context, record, tin, feedback)
-    styles.style_output(context, destination, styles.TIN)
+    styles.style_output(context, destination, styles.style_tin)
     return destination
 
 

@@ -155,7 +155,7 @@ class DetailLayers(PyramidAlgorithm):
             n_details += vectors.add_layer(sink, layer, feedback, rows)
             largest = max(largest, float(magnitude.max(initial=0.0)))
             feedback.setProgress(60 * (level - first + 1) / (last - first + 1))
-        styles.style_output(context, destination, styles.DETAILS)
+        styles.style_output(context, destination, styles.style_details)
         results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
         if parameters.get("ENERGY"):
             results["ENERGY"] = self._write_energy(parameters, context, record, feedback)

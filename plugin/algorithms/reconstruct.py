@@ -116,7 +116,7 @@ class Reconstruct(PyramidAlgorithm):
             return
         dem = record.source.restore(finest, record.frame)
         raster_output.write_dem(path, dem, crs, feedback)
-        styles.style_output(context, path, styles.HILLSHADE)
+        styles.style_output(context, path, styles.style_hillshade)
         results["DEM"] = path
 
     def _write_cloud(self, parameters, context, record, finest, feedback, results):

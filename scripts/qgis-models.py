@@ -1,0 +1,227 @@
+"""Write the models of processing_models/ anew, with the QGIS of this Python.
+
+Run it when a model changes: QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis-models.py
+The models are small enough to be told here, step by step, which also reads better than their XML.
+"""
+
+import sys
+import tempfile
+from pathlib import Path
+
+from qgis.core import (
+    QgsApplication,
+    QgsProcessing,
+    QgsProcessingModelAlgorithm,
+    QgsProcessingModelChildAlgorithm,
+    QgsProcessingModelChildParameterSource,
+    QgsProcessingModelOutput,
+    QgsProcessingModelParameter,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterRasterLayer,
+)
+from qgis.PyQt.QtCore import QPointF
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "processing_models"
+GROUP = "Models"
+
+INTEGER = QgsProcessingParameterNumber.Type.Integer
+DOUBLE = QgsProcessingParameterNumber.Type.Double
+
+
+class Model:
+    """A model under construction; inputs on the left, steps from left to right."""
+
+    def __init__(self, name, description):
+        self.model = QgsProcessingModelAlgorithm(name, GROUP, "models")
+        self.help = {"ALG_DESC": description, "ALG_CREATOR": "Terrain Wavelets"}
+        self.n_inputs = 0
+        self.n_steps = 0
+
+    def input(self, parameter, help_text):
+        """Add an input of the model."""
+        component = QgsProcessingModelParameter(parameter.name())
+        component.setPosition(QPointF(120, 80 + 90 * self.n_inputs))
+        self.model.addModelParameter(parameter, component)
+        self.help[parameter.name()] = help_text
+        self.n_inputs += 1
+
+    def step(self, child_id, algorithm, description, outputs=None, **parameters):
+        """Add a step.
+
+        A parameter is a value, ``input_("NAME")`` or ``result("child", "OUTPUT")``; ``outputs``
+        maps the step's output names to ``(name for a person, help)``.
+        """
+        child = QgsProcessingModelChildAlgorithm(algorithm)
+        assert child.algorithm(), f"{algorithm} is not in this QGIS"
+        child.setChildId(child_id)
+        child.setDescription(description)
+        child.setPosition(QPointF(380 + 260 * self.n_steps, 120 + 40 * (self.n_steps % 2)))
+        for name, value in parameters.items():
+            assert child.algorithm().parameterDefinition(name), f"{algorithm} has no {name}"
+            source = (
+                value
+                if isinstance(value, QgsProcessingModelChildParameterSource)
+                else QgsProcessingModelChildParameterSource.fromStaticValue(value)
+            )
+            child.addParameterSources(name, [source])
+        model_outputs = {}
+        for k, (name, (label, help_text)) in enumerate((outputs or {}).items()):
+            output = QgsProcessingModelOutput(label, label)
+            output.setChildId(child_id)
+            output.setChildOutputName(name)
+            output.setPosition(child.position() + QPointF(60, 140 + 60 * k))
+            model_outputs[label] = output
+            self.help[f"{child_id}:{label}"] = help_text
+        child.setModelOutputs(model_outputs)
+        self.model.addChildAlgorithm(child)
+        self.n_steps += 1
+
+    def write(self, file_name):
+        """Write the model."""
+        self.model.setHelpContent(self.help)
+        self.model.updateDestinationParameters()
+        path = FOLDER / file_name
+        assert self.model.toFile(str(path)), path
+        print(path.relative_to(ROOT))
+
+
+def input_(name):
+    """Take a parameter's value from an input of the model."""
+    return QgsProcessingModelChildParameterSource.fromModelParameter(name)
+
+
+def result(child_id, output):
+    """Take a parameter's value from the output of an earlier step."""
+    return QgsProcessingModelChildParameterSource.fromChildOutput(child_id, output)
+
+
+def optional_number(name, description, kind, default=None, least=0):
+    """Return a number that may be left empty."""
+    return QgsProcessingParameterNumber(name, description, kind, default, True, least)
+
+
+def dem_to_coarse_tin_and_details():
+    """DEM to coarse TIN and details by level."""
+    model = Model(
+        "DEM to coarse TIN and details",
+        "Analyses a DEM and shows both halves of its pyramid: the coarse TIN, and the details that "
+        "were lifted off it, coloured by level. The pyramid itself can be kept for later.",
+    )
+    model.input(QgsProcessingParameterRasterLayer("dem", "DEM"), "Raster of elevations.")
+    model.input(
+        optional_number("levels", "Most levels", INTEGER, 8, 1),
+        "Each level removes about a quarter of the vertices.",
+    )
+    model.input(
+        QgsProcessingParameterNumber(
+            "min_magnitude", "Smallest detail shown", DOUBLE, 0.0, False, 0
+        ),
+        "Details that are shorter, in the unit of elevation, are left out of the layer.",
+    )
+    model.step(
+        "analyse",
+        "terrainwavelets:analysedem",
+        "Analyse the DEM",
+        INPUT=input_("dem"),
+        LEVELS=input_("levels"),
+        outputs={
+            "OUTPUT": ("Pyramid", "GeoPackage from which every level is rebuilt."),
+            "COARSE_TIN": ("Coarse TIN", "Triangles of the coarsest level."),
+        },
+    )
+    model.step(
+        "details",
+        "terrainwavelets:detaillayers",
+        "Show the details",
+        INPUT=result("analyse", "OUTPUT"),
+        MIN_MAGNITUDE=input_("min_magnitude"),
+        outputs={"OUTPUT": ("Details by level", "Removed vertices, sized by magnitude.")},
+    )
+    model.write("dem_to_coarse_tin_and_details.model3")
+
+
+def dem_and_breaklines_to_mesh():
+    """DEM and breaklines to a mesh for hydraulic modelling."""
+    model = Model(
+        "DEM and breaklines to hydraulic mesh",
+        "Turns the cells of a DEM and a layer of breaklines (banks, dykes, road edges) into a "
+        "triangle mesh of the size that a hydraulic model can take. The breaklines stay edges of "
+        "the mesh, however coarse it is.",
+    )
+    source_type = QgsProcessing.SourceType
+    model.input(QgsProcessingParameterRasterLayer("dem", "DEM"), "Raster of elevations.")
+    model.input(
+        QgsProcessingParameterFeatureSource(
+            "breaklines", "Breaklines", [source_type.TypeVectorLine], optional=True
+        ),
+        "Lines that stay edges of the mesh; without Z they lie on the DEM.",
+    )
+    model.input(
+        QgsProcessingParameterFeatureSource(
+            "area", "Area of the model", [source_type.TypeVectorPolygon], optional=True
+        ),
+        "Polygon that the mesh is clipped to.",
+    )
+    model.input(
+        QgsProcessingParameterNumber(
+            "vertices", "Number of mesh vertices", INTEGER, 20000, False, 3
+        ),
+        "The mesh has exactly so many, if breaklines allow.",
+    )
+    model.step(
+        "points",
+        "native:pixelstopoints",
+        "Cells to points",
+        INPUT_RASTER=input_("dem"),
+        RASTER_BAND=1,
+        FIELD_NAME="elevation",
+    )
+    model.step(
+        "analyse",
+        "terrainwavelets:analysetin",
+        "Triangulate and analyse",
+        INPUT=result("points", "OUTPUT"),
+        Z_FIELD="elevation",
+        BREAKLINES=input_("breaklines"),
+        CLIP=input_("area"),
+        TARGET_VERTICES=input_("vertices"),
+    )
+    model.step(
+        "mesh",
+        "terrainwavelets:extractlevel",
+        "Write the mesh",
+        INPUT=result("analyse", "OUTPUT"),
+        LEVEL=0,
+        outputs={
+            "MESH": ("Hydraulic mesh", "2DM file, a mesh layer in QGIS."),
+            "TIN": ("Triangles of the mesh", "The same as polygons."),
+        },
+    )
+    model.write("dem_and_breaklines_to_hydraulic_mesh.model3")
+
+
+def main():
+    """Write all models."""
+    application = QgsApplication([], False)
+    application.initQgis()
+    sys.path.append(str(Path(QgsApplication.pkgDataPath()) / "python" / "plugins"))
+    from processing.core.Processing import Processing
+
+    Processing.initialize()
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "terrain_wavelets").symlink_to(ROOT, target_is_directory=True)
+        sys.path.insert(0, folder)
+        from terrain_wavelets.plugin.packages import install_finder
+        from terrain_wavelets.plugin.provider import TerrainWaveletsProvider
+
+        install_finder()
+        provider = TerrainWaveletsProvider()
+        QgsApplication.processingRegistry().addProvider(provider)
+        dem_to_coarse_tin_and_details()
+        dem_and_breaklines_to_mesh()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,103 @@
+"""Every model that comes with the plugin, loaded by the provider and run in a real QGIS."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from qgis_layers import Log, hills, wkt_layer, write_raster
+
+FOLDER = Path(__file__).resolve().parent.parent.parent / "processing_models"
+
+MODELS = {
+    "DEM to coarse TIN and details": "dem_to_coarse_tin_and_details.model3",
+    "DEM and breaklines to hydraulic mesh": "dem_and_breaklines_to_hydraulic_mesh.model3",
+}
+
+
+@pytest.fixture
+def dem(tmp_path):
+    return write_raster(tmp_path / "dem.tif", hills().astype("float32"), -9999.0)
+
+
+@pytest.fixture
+def run_model(provider):
+    """Return a function that runs a model and loads its results: name -> (results, project)."""
+    import processing
+    from qgis.core import QgsProcessingContext, QgsProject
+
+    project = QgsProject.instance()
+
+    def run(name, parameters):
+        context = QgsProcessingContext()
+        context.setProject(project)
+        log = Log()
+        results = processing.runAndLoadResults(
+            f"terrainwavelets:{name}", parameters, feedback=log, context=context
+        )
+        assert log.errors == []
+        return results, {layer.name(): layer for layer in project.mapLayers().values()}
+
+    yield run
+    project.clear()
+
+
+def test_every_file_is_listed_here():
+    assert {path.name for path in FOLDER.glob("*.model3")} == set(MODELS.values())
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_provider_lists_the_model_with_help_and_outputs(provider, name):
+    model = provider.algorithm(name)
+    assert model is not None, [a.name() for a in provider.algorithms()]
+    assert model.group()
+    assert len(model.shortHelpString()) > 100
+    outputs = [o for o in model.outputDefinitions() if o.description()]
+    assert outputs
+    assert all(output.description()[0].isupper() for output in outputs)
+    for child in model.childAlgorithms().values():
+        assert child.algorithm() is not None, child.algorithmId()
+        assert child.description()
+
+
+def test_dem_to_coarse_tin_and_details(run_model, dem):
+    results, layers = run_model(
+        "DEM to coarse TIN and details",
+        {
+            "dem": dem,
+            "levels": 4,
+            "min_magnitude": 0.5,
+            "analyse:Pyramid": "TEMPORARY_OUTPUT",
+            "analyse:Coarse TIN": "TEMPORARY_OUTPUT",
+            "details:Details by level": "TEMPORARY_OUTPUT",
+        },
+    )
+    assert Path(results["analyse:Pyramid"]).stat().st_size > 0
+    assert layers["Coarse TIN"].renderer().type() == "graduatedSymbol"
+    details = layers["Details by level"]
+    assert details.renderer().type() == "categorizedSymbol"
+    assert min(f["magnitude"] for f in details.getFeatures()) >= 0.5
+    assert details.crs().authid() == "EPSG:2154"
+
+
+def test_dem_and_breaklines_to_hydraulic_mesh(run_model, dem, tmp_path):
+    lines = wkt_layer("LineString", ["LineString (700100 6599900, 700700 6599500)"])
+    results, layers = run_model(
+        "DEM and breaklines to hydraulic mesh",
+        {
+            "dem": dem,
+            "breaklines": lines,
+            "vertices": 500,
+            "mesh:Hydraulic mesh": str(tmp_path / "mesh.2dm"),
+            "mesh:Triangles of the mesh": "TEMPORARY_OUTPUT",
+        },
+    )
+    text = Path(results["mesh:Hydraulic mesh"]).read_text()
+    nodes = np.array([line.split()[2:] for line in text.splitlines() if line.startswith("ND")])
+    assert len(nodes) == 500
+    assert layers["Triangles of the mesh"].renderer().type() == "graduatedSymbol"
+    ends = nodes.astype(float)[:, :2].tolist()
+    assert [700100.0, 6599900.0] in ends
+    assert [700700.0, 6599500.0] in ends
+    mesh = layers["mesh"]
+    assert mesh.dataProvider().vertexCount() == 500
+    assert mesh.crs().authid() == "EPSG:2154"
