@@ -123,7 +123,8 @@ def open_stranger(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_VALUE_BYTES)
         connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
         yield connection
-    except sqlite3.Error as error:
+    # A damaged schema may hold text that is none.
+    except (sqlite3.Error, UnicodeError) as error:
         raise InputFileError(
             f"{name}: this is no GeoPackage, or a damaged one ({error}); give a pyramid file that "
             "'terrain-wavelets analyse' wrote."

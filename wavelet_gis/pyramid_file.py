@@ -138,8 +138,8 @@ def read_pyramid(path: str | os.PathLike[str]) -> PyramidRecord:
     """
     with open_stranger(path) as connection, _pool() as pool:
         metadata = _read_metadata(connection, path)
-        arrays = _Arrays(connection, pool)
         try:
+            arrays = _Arrays(connection, pool)
             return _from_parts(metadata, arrays, _read_levels(connection))
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             if isinstance(error, PyramidError):

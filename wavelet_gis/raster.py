@@ -82,8 +82,8 @@ def write_dem(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
         When GDAL cannot write this format or type of data.
     """
     import rasterio
-    from rasterio.crs import CRS
     from rasterio._err import CPLE_BaseError
+    from rasterio.crs import CRS
     from rasterio.errors import NotGeoreferencedWarning, RasterioError
 
     driver = _driver_of(path)
@@ -117,8 +117,8 @@ def write_dem(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
 def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
     """Write a DEM as a cloud-optimised GeoTIFF (tiled, deflate, with overviews)."""
     import rasterio
-    from rasterio.crs import CRS
     from rasterio._err import CPLE_BaseError
+    from rasterio.crs import CRS
     from rasterio.errors import RasterioError
 
     n_rows, n_columns = dem.geometry.shape

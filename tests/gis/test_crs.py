@@ -44,7 +44,7 @@ def test_metres_per_degree_are_those_of_the_ellipsoid():
 )
 def test_the_frame_is_left_as_it_was_entered(west, south, points, unit):
     frame = working_frame(DEGREES, (west, south, west + 1, south + 1), unit)
-    coordinates = np.array(points) + [west, south, 0]
+    coordinates = np.array(points) + np.array([west, south, 0])
     back = frame.to_file(frame.to_local(coordinates))
     np.testing.assert_allclose(back, coordinates, rtol=1e-14, atol=1e-12)
 
@@ -171,7 +171,7 @@ def test_frames_and_systems_survive_json():
     ],
 )
 def test_a_damaged_frame_is_refused(damage):
-    with pytest.raises(CrsError, match="damaged|no length"):
+    with pytest.raises(CrsError, match=r"damaged|no length"):
         LocalFrame.from_dict(LocalFrame().to_dict() | damage)
 
 

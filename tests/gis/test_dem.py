@@ -122,7 +122,7 @@ def test_an_altered_pyramid_gives_altered_cells_that_stay_data():
     dem = dem_of(values, nodata=int(values[0, 0]) + 1)
     source, pyramid = source_with_ledger(dem)
     finest = pyramid.synthesise()
-    raised = type(finest)(finest.vertices + [0, 0, 1.0], finest.faces)
+    raised = type(finest)(finest.vertices + np.array([0, 0, 1.0]), finest.faces)
     back = source.altered().restore(raised, LocalFrame())
     assert not source.altered().is_exact
     expected = values + 1
@@ -136,7 +136,7 @@ def test_another_mesh_is_no_original():
     with pytest.raises(PyramidError, match="finest"):
         source.restore(pyramid.mesh(0), LocalFrame())
     finest = pyramid.synthesise()
-    raised = type(finest)(finest.vertices + [0, 0, 1.0], finest.faces)
+    raised = type(finest)(finest.vertices + np.array([0, 0, 1.0]), finest.faces)
     with pytest.raises(PyramidError, match="bit for bit"):
         source.restore(raised, LocalFrame())
 

@@ -214,7 +214,7 @@ def with_wkt(path, text, geotiff=False):
 def test_a_broken_wkt_is_told_of_and_can_be_overridden(tmp_path, text):
     path = write_las(tmp_path / "a.las")
     with_wkt(path, text)
-    with pytest.warns(CrsWarning, match="broken .* --crs"):
+    with pytest.warns(CrsWarning, match=r"broken .* --crs"):
         terrain = open_terrain(path)
     assert terrain.system.wkt is None
     assert open_terrain(path, crs="EPSG:25832").system.kind == "projected"
@@ -274,7 +274,7 @@ def header_with(path, position, content):
 def test_more_points_than_memory(tmp_path, suffix):
     path = write_las(tmp_path / f"a.{suffix}")
     header_with(path, 247, (1 << 60).to_bytes(8, "little"))
-    with pytest.raises(InputFileError, match="memory|damaged"):
+    with pytest.raises(InputFileError, match=r"memory|damaged"):
         read_cloud(path)
 
 

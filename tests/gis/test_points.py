@@ -60,7 +60,7 @@ def test_an_altered_pyramid_moves_duplicates_with_their_vertex(cloud):
     mesh, source = cloud_mesh(cloud, LocalFrame())
     source = source.with_ledger(cloud, mesh, LocalFrame()).altered()
     raised = TriangleMesh(
-        mesh.vertices + [0, 0, 3.0], mesh.faces, mesh.attributes, mesh.attribute_names
+        mesh.vertices + np.array([0, 0, 3.0]), mesh.faces, mesh.attributes, mesh.attribute_names
     )
     back = source.restore(raised, LocalFrame())
     assert not source.is_exact
@@ -69,7 +69,7 @@ def test_an_altered_pyramid_moves_duplicates_with_their_vertex(cloud):
 
 def test_altered_attributes_stay_in_their_range(cloud):
     mesh, source = cloud_mesh(cloud, LocalFrame())
-    wild = mesh.attributes + [300.0, 0.0]
+    wild = mesh.attributes + np.array([300.0, 0.0])
     altered = TriangleMesh(mesh.vertices, mesh.faces, wild, mesh.attribute_names)
     back = source.altered().restore(altered, LocalFrame())
     is_vertex = np.delete(np.arange(300), source.dropped)
@@ -82,7 +82,7 @@ def test_another_mesh_is_no_original(cloud):
     mesh, source = cloud_mesh(cloud, LocalFrame())
     source = source.with_ledger(cloud, mesh, LocalFrame())
     raised = TriangleMesh(
-        mesh.vertices + [0, 0, 3.0], mesh.faces, mesh.attributes, mesh.attribute_names
+        mesh.vertices + np.array([0, 0, 3.0]), mesh.faces, mesh.attributes, mesh.attribute_names
     )
     with pytest.raises(PyramidError, match="checksum"):
         source.restore(raised, LocalFrame())

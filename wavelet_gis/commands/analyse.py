@@ -45,10 +45,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     output = parser.add_argument_group("output")
     add_overwrite_argument(output)  # type: ignore[arg-type]
     output.add_argument(
-        "--no-details",
-        action="store_true",
-        help="write no layers of details; the pyramid itself is complete without them, and a "
-        "third as large",
+        "--layers",
+        choices=("all", "coarse", "none"),
+        default="all",
+        help="vector layers to write: coarse TIN and details (the default), the coarse TIN only, "
+        "or none; the pyramid is complete without them and a quarter as large",
     )
     output.add_argument(
         "--no-errors", action="store_true", help="do not measure the errors of the levels"
@@ -88,19 +89,21 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     n_triangles = terrain.mesh.n_faces
     del terrain, pyramid  # the input is in the record now; large ones need the memory
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        _write(scratch, record, console, with_details=not arguments.no_details)
+        _write(scratch, record, console, arguments.layers)
     clock.lap("write")
     _report(arguments, record, n_triangles, clock.laps, console)
 
 
-def _write(path: Any, record: PyramidRecord, console: Console, *, with_details: bool) -> None:
+def _write(path: Any, record: PyramidRecord, console: Console, layers: str) -> None:
     from wavelet_gis.layers import coarse_layers, detail_layers
     from wavelet_gis.pyramid_file import write_pyramid
     from wavelet_gis.vector import add_layers
 
     with console.progress("writing") as progress:
         write_pyramid(path, record, progress)
-    details = detail_layers(record) if with_details else ()
+    if layers == "none":
+        return
+    details = detail_layers(record) if layers == "all" else ()
     with console.progress("layers"):
         add_layers(path, chain(coarse_layers(record), details), record.system)
 
