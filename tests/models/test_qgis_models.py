@@ -66,12 +66,12 @@ def test_dem_to_coarse_tin_and_details(run_model, dem):
             "dem": dem,
             "levels": 4,
             "min_magnitude": 0.5,
-            "analyse:Pyramid": "TEMPORARY_OUTPUT",
-            "analyse:Coarse TIN": "TEMPORARY_OUTPUT",
-            "details:Details by level": "TEMPORARY_OUTPUT",
+            "pyramid": "TEMPORARY_OUTPUT",
+            "coarse_tin": "TEMPORARY_OUTPUT",
+            "details_by_level": "TEMPORARY_OUTPUT",
         },
     )
-    assert Path(results["analyse:Pyramid"]).stat().st_size > 0
+    assert Path(results["pyramid"]).stat().st_size > 0
     assert layers["Coarse TIN"].renderer().type() == "graduatedSymbol"
     details = layers["Details by level"]
     assert details.renderer().type() == "categorizedSymbol"
@@ -87,11 +87,11 @@ def test_dem_and_breaklines_to_hydraulic_mesh(run_model, dem, tmp_path):
             "dem": dem,
             "breaklines": lines,
             "vertices": 500,
-            "mesh:Hydraulic mesh": str(tmp_path / "mesh.2dm"),
-            "mesh:Triangles of the mesh": "TEMPORARY_OUTPUT",
+            "hydraulic_mesh": str(tmp_path / "mesh.2dm"),
+            "triangles_of_the_mesh": "TEMPORARY_OUTPUT",
         },
     )
-    text = Path(results["mesh:Hydraulic mesh"]).read_text()
+    text = Path(results["hydraulic_mesh"]).read_text()
     nodes = np.array([line.split()[2:] for line in text.splitlines() if line.startswith("ND")])
     assert len(nodes) == 500
     assert layers["Triangles of the mesh"].renderer().type() == "graduatedSymbol"
