@@ -59,10 +59,10 @@ def n_fans(faces, n_vertices):
     return fans
 
 
-def assert_same_mesh(actual, expected, relative=1e-9, of_largest=False):
+def assert_same_mesh(actual, expected, relative=1e-9, largest=None):
     """Assert equal faces, names and values, within ``relative`` of each column's range.
 
-    ``of_largest``: of the largest value of all instead, for filters without bound.
+    ``largest``: measure against this value instead, for filters without bound.
     """
     assert actual.attribute_names == expected.attribute_names
     np.testing.assert_array_equal(actual.faces, expected.faces)
@@ -72,8 +72,8 @@ def assert_same_mesh(actual, expected, relative=1e-9, of_largest=False):
     span = np.ptp(theirs, axis=0)
     # A column's rounding is that of its values, however small its range.
     allowed = relative * span + 8 * np.finfo(float).eps * np.abs(theirs).max(axis=0)
-    if of_largest:
-        allowed = np.full(len(span), relative * np.abs(theirs).max())
+    if largest is not None:
+        allowed = np.full(len(span), relative * largest)
     error = np.abs(ours - theirs).max(axis=0)
     for name, e, limit in zip(names, error, allowed, strict=True):
         assert e <= limit, f"column {name} differs by {e:.3g}, more than {limit:.3g}"
@@ -158,13 +158,21 @@ def assert_integral_is_constant(pyramid, relative=1e-12):
     assert (spread <= allowed).all(), f"the integral moves by {spread}, more than {allowed}"
 
 
+def largest_coefficient(pyramid):
+    """Return the largest absolute value among the coefficients and details of all levels."""
+    columns = [mesh.vertices for _, mesh in pyramid.meshes()]
+    columns += [mesh.attributes for _, mesh in pyramid.meshes()]
+    columns += [step.details for step in pyramid.steps]
+    return max(np.abs(values).max(initial=0) for values in columns)
+
+
 def assert_pyramid_is_consistent(pyramid, mesh):
     """Assert perfect reconstruction of ``mesh`` and every step's rules, in one synthesis pass."""
     unbounded = pyramid.parameters.get("prediction") == "least_squares"
     fine_to_coarse = dict(pyramid.meshes())
     assert sorted(fine_to_coarse) == list(range(pyramid.n_levels + 1))
     finest = fine_to_coarse[pyramid.n_levels]
-    assert_same_mesh(finest, mesh, of_largest=unbounded)
+    assert_same_mesh(finest, mesh, largest=largest_coefficient(pyramid) if unbounded else None)
     for level in range(pyramid.n_levels):
         assert_step_is_consistent(pyramid, level, fine_to_coarse[level + 1], fine_to_coarse[level])
     if pyramid.update == "minimum_norm" and not unbounded:

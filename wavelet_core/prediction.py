@@ -83,7 +83,8 @@ def predict(method: str, removal: Removal) -> csr_array:
     - ``nnls`` (NNLS): the non-negative weights of sum one that leave the smallest detail vector.
       *Our choice:* a damping of 1e-8 of the squared ring size makes them unique where several
       sets are equally good.
-    - ``least_squares`` (LS): as NNLS, with any sign; the paper's unstable baseline.
+    - ``least_squares`` (LS): as NNLS, damping included, with any sign; the paper's unstable
+      baseline.
     - ``barycentric`` (BL; beyond the paper): the coordinates of the vertex, in plan, in the
       coarse face that now covers it, so that the detail is its vertical distance from the
       coarse surface. The row also names the rest of the ring where all three corners are

@@ -205,8 +205,7 @@ def fitted_weights(method: str, points: np.ndarray, ring: list[int], odd: int) -
     quadratic on rays through the origin.
     """
     offsets = np.array([points[w] - points[odd] for w in ring])
-    damping = {"nnls": 1e-8, "least_squares": 1e-10}[method]
-    damping *= np.mean(np.sum(offsets**2, axis=1))
+    damping = 1e-8 * np.mean(np.sum(offsets**2, axis=1))
     n = len(ring)
     matrix = np.vstack([offsets.T, math.sqrt(damping) * np.eye(n), np.ones((1, n))])
     right = np.zeros(len(matrix))

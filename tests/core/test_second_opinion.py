@@ -73,8 +73,8 @@ def test_filters_and_coefficients(mesh_name, prediction, update, signal):
         **options,
     )
     if prediction == "least_squares":
-        # Weights that hardly change the detail are determined by the damping of 1e-10 alone.
-        assert_agree(pyramid, analysis, weight_tolerance=1e-2, value_tolerance=1e-6)
+        # Weights that hardly change the detail are determined by the damping of 1e-8 alone.
+        assert_agree(pyramid, analysis, weight_tolerance=1e-4, value_tolerance=1e-6)
     else:
         assert_agree(pyramid, analysis, weight_tolerance=1e-8, value_tolerance=1e-9)
 

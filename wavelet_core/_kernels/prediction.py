@@ -17,7 +17,9 @@ SHORTEST_EDGE = 1e-12
 # least sum of cotangents that is still divided by
 LEAST_COTANGENT_SUM = 1e-9
 NNLS_DAMPING = 1e-8
-LEAST_SQUARES_DAMPING = 1e-10
+# the same, so that the two differ in the sign of the weights alone; with 1e-10 the weights of 20
+# levels of LiDAR with the one-ring-mean update lost more than 1e-9 of the coefficients
+LEAST_SQUARES_DAMPING = 1e-8
 # dual values below this count as met in the non-negative least squares
 NNLS_TOLERANCE = 1e-11
 # a ring flatter than this in plan determines no plane (relative to its squared size)
