@@ -44,13 +44,13 @@ def check_output(
         inputs, or its folder is missing or cannot be written.
     """
     target = Path(path)
+    if target.is_dir():
+        raise OutputFileError(f"{target}: this is a folder; name a file in it.")
     if suffixes and target.suffix.lower() not in suffixes:
         raise OutputFileError(
             f"{target}: the name of the output must end in {' or '.join(suffixes)}; "
             "its suffix chooses the format."
         )
-    if target.is_dir():
-        raise OutputFileError(f"{target}: this is a folder; name a file in it.")
     for source in inputs:
         if target.exists() and os.path.exists(source) and os.path.samefile(target, source):
             raise OutputFileError(

@@ -1,0 +1,140 @@
+"""The command as a process: exit codes, signals, pipes, terminals, and how fast it starts."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from gis.samples import hills, write_tif
+
+START = [sys.executable, "-m", "wavelet_gis.cli"]
+
+
+def test_help_and_usage(process):
+    said = process("--help")
+    assert said.returncode == 0
+    for name in ("analyse", "info", "extract", "reconstruct"):
+        assert name in said.stdout
+        said_by_it = process(name, "--help")
+        assert said_by_it.returncode == 0
+        assert "--quiet" in said_by_it.stdout
+        assert "--json" in said_by_it.stdout
+    assert process("--version").stdout.startswith("terrain-wavelets ")
+    for usage in ([], ["dance"], ["analyse"], ["analyse", "a", "b", "--levels", "x"]):
+        said = process(*usage)
+        assert said.returncode == 2
+        assert "usage:" in said.stderr
+
+
+def test_help_imports_nothing_heavy(process):
+    code = (
+        "import sys; from wavelet_gis.cli import main; main(['--help']);"
+        "heavy = {'numpy', 'scipy', 'numba', 'rasterio', 'pyogrio', 'laspy', 'tqdm'};"
+        "print('HEAVY', sorted(heavy & set(sys.modules)))"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert "HEAVY []" in said.stdout
+
+
+def test_a_refusal_in_a_process_of_its_own(process, tmp_path):
+    said = process("analyse", tmp_path / "none.tif", tmp_path / "a.gpkg")
+    assert said.returncode == 1
+    assert said.stdout == ""
+    assert said.stderr.count("\n") == 1
+
+
+def test_no_progress_bar_in_a_pipe(process, tif, tmp_path):
+    said = process("analyse", tif, tmp_path / "a.gpkg", "--levels", 2)
+    assert said.returncode == 0
+    assert said.stderr == ""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="pseudo-terminals of POSIX")
+@pytest.mark.parametrize("quiet", [False, True])
+def test_a_progress_bar_on_a_terminal(tif, tmp_path, quiet):
+    import fcntl
+    import pty
+    import struct
+    import termios
+
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
+    options = ["--quiet"] if quiet else []
+    command = [*START, "analyse", str(tif), str(tmp_path / "a.gpkg"), *options]
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs)
+    os.close(theirs)
+    shown = b""
+    while True:
+        try:
+            block = os.read(ours, 4096)
+        except OSError:  # the other side is closed
+            break
+        shown += block
+        if not block:
+            break
+    os.close(ours)
+    assert process.wait(timeout=60) == 0
+    assert (b"%|" in shown) != quiet
+
+
+def start_long_work(tmp_path):
+    """Start an analysis that takes long enough to be stopped, and wait until it is at it."""
+    source = write_tif(tmp_path / "large.tif", hills(700, 700).astype("f4"))
+    output = tmp_path / "a.gpkg"
+    command = [*START, "analyse", str(source), str(output), "--design", "NNLSMN"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    return process, output
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize(
+    ("number", "code", "what"),
+    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")],
+)
+def test_a_signal_stops_it_and_leaves_nothing(tmp_path, number, code, what):
+    process, output = start_long_work(tmp_path)
+    time.sleep(4)
+    assert process.poll() is None, "the work was done too soon to be stopped"
+    process.send_signal(number)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == code
+    assert what in err
+    assert err.count("\n") == 1
+    assert not output.exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["large.tif"]
+
+
+def test_a_reader_that_goes_away(pyramid):
+    command = f"{sys.executable} -m wavelet_gis.cli info '{pyramid}' | head -1"
+    said = subprocess.run(["bash", "-o", "pipefail", "-c", command], capture_output=True, text=True)
+    assert said.stderr == ""
+    assert "hills.tif" in said.stdout
+
+
+def test_an_unforeseen_error_is_one_line_and_a_traceback_on_request(pyramid, monkeypatch, capsys):
+    from wavelet_gis.cli import main
+
+    def fail(path):
+        raise ZeroDivisionError("a bug")
+
+    monkeypatch.setattr("wavelet_gis.pyramid_file.read_summary", fail)
+    assert main(["info", str(pyramid)]) == 1
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert "please report" in err
+    monkeypatch.setenv("TERRAIN_WAVELETS_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        main(["info", str(pyramid)])
+
+
+def test_memory_that_runs_out_is_one_line(pyramid, monkeypatch, capsys):
+    from wavelet_gis.cli import main
+
+    def fail(path):
+        raise MemoryError
+
+    monkeypatch.setattr("wavelet_gis.pyramid_file.read_summary", fail)
+    assert main(["info", str(pyramid)]) == 1
+    assert "not enough memory" in capsys.readouterr().err
