@@ -9,7 +9,9 @@ from qgis.core import (
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
+    QgsPalettedRasterRenderer,
     QgsProcessingLayerPostProcessorInterface,
+    QgsRandomColorRamp,
     QgsRendererCategory,
     QgsVectorLayerUtils,
 )
@@ -31,15 +33,11 @@ class _Style(QgsProcessingLayerPostProcessorInterface):
         layer.triggerRepaint()
 
 
-def style_tin(layer) -> None:
-    """Colour the faces by elevation, with hair-thin edges, as in a pyramid file."""
-    import numpy as np
-
-    from wavelet_gis.styles import tin_style
-
-    values, is_found = QgsVectorLayerUtils.getValues(layer, "elevation")
-    if is_found:
-        _apply(layer, tin_style(np.array(values, dtype=np.float64)))
+def apply_qml(layer, qml: str) -> None:
+    """Give a layer the style in a QML text."""
+    document = QDomDocument()
+    document.setContent(qml)
+    layer.importNamedStyle(document)
 
 
 def style_details(layer) -> None:
@@ -57,7 +55,7 @@ def style_details(layer) -> None:
     n_levels = 1 + max(levels, default=0)
     categories = []
     for level in levels:
-        _apply(layer, detail_style(level, n_levels, magnitude))
+        apply_qml(layer, detail_style(level, n_levels, magnitude))
         symbol = layer.renderer().symbol().clone()
         categories.append(QgsRendererCategory(level, symbol, tr("level {}").format(level)))
     if categories:
@@ -82,10 +80,12 @@ def set_mesh_crs(layer) -> None:
             layer.setCrs(QgsCoordinateReferenceSystem.fromWkt(file.read()))
 
 
-def _apply(layer, qml: str) -> None:
-    document = QDomDocument()
-    document.setContent(qml)
-    layer.importNamedStyle(document)
+def style_labels(layer) -> None:
+    """Give each label of a raster a colour of its own."""
+    provider = layer.dataProvider()
+    ramp = QgsRandomColorRamp()
+    classes = QgsPalettedRasterRenderer.classDataFromRaster(provider, 1, ramp)
+    layer.setRenderer(QgsPalettedRasterRenderer(provider, 1, classes))
 
 
 #: Post-processors that were handed out. Some versions of QGIS take them over, others do not, so

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from qgis.core import QgsProcessingException
 
 from . import styles, vectors
@@ -11,15 +13,15 @@ from .pyramids import crs_of
 def write_tin(algorithm, parameters, name, context, record, level, feedback) -> str:
     """Write the triangles of a level to the sink ``name`` and return where they are."""
     tin, _ = _level_layers(record, level)
-    destination = _write(algorithm, parameters, name, context, record, tin, feedback)
-    styles.style_output(context, destination, styles.style_tin)
+    destination = write_layer(algorithm, parameters, name, context, record, tin, feedback)
+    styles.style_output(context, destination, partial(styles.apply_qml, qml=tin.style))
     return destination
 
 
 def write_vertices(algorithm, parameters, name, context, record, level, feedback) -> str:
     """Write the vertices of a level, with their attributes, to the sink ``name``."""
     _, vertices = _level_layers(record, level)
-    return _write(algorithm, parameters, name, context, record, vertices, feedback)
+    return write_layer(algorithm, parameters, name, context, record, vertices, feedback)
 
 
 def _level_layers(record, level):
@@ -28,7 +30,8 @@ def _level_layers(record, level):
     return coarse_layers(record, level)
 
 
-def _write(algorithm, parameters, name, context, record, layer, feedback):
+def write_layer(algorithm, parameters, name, context, record, layer, feedback) -> str:
+    """Write a ``wavelet_gis.layers.Layer`` to the sink ``name`` and return where it is."""
     sink, destination = algorithm.parameterAsSink(
         parameters,
         name,

@@ -12,7 +12,7 @@ repository=$(cd "$(dirname "$0")/.." && pwd -P)
 root=${QGIS_CHROOT:-${XDG_CACHE_HOME:-$HOME/.cache}/terrain-wavelets/qgis-trixie}
 suite=trixie
 packages=(qgis python3-qgis qgis-providers python3-scipy python3-numba python3-pytest python3-hypothesis
-          python3-laspy python3-pip python3-venv proj-data make git)
+          python3-laspy python3-sklearn python3-pip python3-venv proj-data make git)
 
 say() { printf 'qgis-chroot: %s\n' "$*" >&2; }
 

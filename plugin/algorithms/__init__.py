@@ -6,6 +6,7 @@ Their ids, parameters and outputs are public: models and scripts store them. Non
 from .analyse_dem import AnalyseDem
 from .analyse_point_cloud import AnalysePointCloud
 from .analyse_tin import AnalyseTin
+from .cluster_details import ClusterDetails
 from .detail_layers import DetailLayers
 from .extract_level import ExtractLevel
 from .quality_report import QualityReport
@@ -19,5 +20,6 @@ ALGORITHMS = (
     ExtractLevel,
     Reconstruct,
     DetailLayers,
+    ClusterDetails,
     QualityReport,
 )
