@@ -17,7 +17,7 @@ from ._validate import FloatArray, frozen
 from .errors import OptionError
 from .pyramid import Pyramid
 from .shape import surface_shape
-from .spectrum import band_components, band_energies, vertex_details
+from .spectrum import band_components, band_energies, heights_above_lows, vertex_details
 
 __all__ = ["Signature", "energy_signature", "joined_levels", "plain_features", "scale_features"]
 
@@ -120,11 +120,11 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     Returns
     -------
     Signature
-        For z, by band: the height of the vertex above the band's coarser surface, and the log of
-        the root mean square detail; then the vertex's own detail and the level at which it went.
-        For each attribute, by band: its smooth value on the coarser level and the log of the
-        root mean square detail. Heights are differences, so a class learned in the valley holds
-        on the hill.
+        For z, by band: the height of the vertex above the band's coarser surface, that above the
+        lowest vertex of its neighbourhood, and the log of the root mean square detail; then the
+        vertex's own detail and the level at which it went. For each attribute, by band: its
+        smooth value on the coarser level and the log of the root mean square detail. Heights are
+        differences, so a class learned in the valley holds on the hill.
 
     Raises
     ------
@@ -138,9 +138,11 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     components = band_components(pyramid, "z", _part(progress, 0, n_parts))
     blocks: list[NDArray] = [
         np.column_stack([components.residual(first) for first, _ in bands]),
+        heights_above_lows(pyramid, [first for first, _ in bands]),
         _log_energies(pyramid, None, bands, None),
     ]
     names = [f"height above {first}" for first, _ in bands]
+    names += [f"height above lows of {first}" for first, _ in bands]
     names += [f"rms geometry {label}" for label in labels]
     details = vertex_details(pyramid)
     column = 0 if pyramid.signal == "z" else 2

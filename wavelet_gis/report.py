@@ -70,8 +70,8 @@ def report_page(
         ]
     )
     title = f"Quality of the pyramid of {figures['source']['name']}"
-    # "</" would end the script element, whatever the JSON says around it.
-    embedded = json.dumps(figures, allow_nan=False).replace("</", "<\\/")
+    # "</script" in a name would end the element, whatever the JSON says around it.
+    embedded = json.dumps(figures, allow_nan=False).replace("<", "\\u003c")
     page = (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'

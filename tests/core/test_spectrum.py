@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from helpers import ALL_PREDICTIONS, UPDATES
 
-from wavelet_core import Cancelled, OptionError, TriangleMesh, analyse, synthetic
+from wavelet_core import Cancelled, OptionError, PyramidError, TriangleMesh, analyse, synthetic
 from wavelet_core.spectrum import (
     STAYS,
     band_components,
     band_energies,
+    heights_above_lows,
     level_spacings,
     vertex_details,
 )
@@ -148,3 +149,30 @@ def test_an_unknown_channel_is_refused_and_progress_may_stop():
         function(pyramid, progress=seen.append)
         assert seen[-1] == 1.0
         assert sorted(seen) == seen
+
+
+def test_the_ground_is_low_at_all_scales_and_a_roof_only_at_fine_ones():
+    axis = np.arange(40.0)
+    x, y = np.meshgrid(axis, axis)
+    is_roof = (np.abs(x - 20) < 6) & (np.abs(y - 20) < 6)
+    mesh = TriangleMesh.from_grid(np.where(is_roof, 8.0, 0.1 * x), x=axis, y=axis)
+    pyramid = analyse(mesh, levels=16, partition="random", prediction="uniform")
+    heights = heights_above_lows(pyramid, [0, pyramid.n_levels])
+    assert heights.min() >= -1e-9
+    assert np.abs(heights[:, 1]).max() < 1e-9
+    middle = np.hypot(x - 20, y - 20).ravel() < 3
+    assert heights[middle, 0].min() > 4
+    assert np.median(heights[~is_roof.ravel(), 0]) < 2
+
+
+def test_lows_are_bounded_by_the_lowest_and_levels_are_checked():
+    mesh = synthetic.scattered(300)
+    pyramid = analyse(mesh, levels=5, partition="quadric", prediction="geometric")
+    heights = heights_above_lows(pyramid, [3, 0, 1])
+    z = mesh.vertices[:, 2]
+    assert (heights <= (z - z.min())[:, None] + 1e-9).all()
+    assert heights[:, 1].mean() > heights[:, 2].mean() > heights[:, 0].mean()
+    with pytest.raises(PyramidError, match="no level 6"):
+        heights_above_lows(pyramid, [6])
+    with pytest.raises(Cancelled):
+        heights_above_lows(pyramid, [0], progress=lambda fraction: False)
