@@ -11,8 +11,16 @@ from .translation import tr
 
 # Kept here, and not asked of wavelet_core, so that the toolbox lists them where SciPy is missing;
 # a test compares them with the core's.
-PARTITIONS = ("quadric", "colouring")
-PREDICTIONS = ("geometric", "uniform", "cotangent", "nnls", "least_squares", "barycentric")
+PARTITIONS = ("quadric", "colouring", "random")
+PREDICTIONS = (
+    "geometric",
+    "uniform",
+    "cotangent",
+    "nnls",
+    "least_squares",
+    "barycentric",
+    "plane",
+)
 UPDATES = ("minimum_norm", "martinez_ortega", "one_ring_mean", "none")
 SIGNALS = ("z", "xyz")
 VERTICAL_UNITS = ("from the CRS", "metre", "foot", "us_survey_foot")
@@ -70,7 +78,8 @@ def add_design_parameters(algorithm) -> None:
         tr(
             "Which vertices go at a level (the paper's odd vertices). <i>quadric</i>: those of "
             "least cost by generalised quadric and bending energy, as in the paper; "
-            "<i>colouring</i>: regardless of shape, the paper's baseline."
+            "<i>colouring</i>: regardless of shape, the paper's baseline; <i>random</i>: in random "
+            "order."
         ),
         advanced=True,
     )
@@ -80,7 +89,8 @@ def add_design_parameters(algorithm) -> None:
             "How a removed vertex is estimated from its neighbours; what is left over is its "
             "detail. In the paper: <i>geometric</i> GL, <i>uniform</i> UG, <i>cotangent</i> CL, "
             "<i>nnls</i> NNLS (non-negative least squares), <i>least_squares</i> LS (can be "
-            "unstable); <i>barycentric</i>: from the coarse triangle that now covers it."
+            "unstable); <i>barycentric</i>: from the coarse triangle that now covers it; "
+            "<i>plane</i>: from the plane fitted to the neighbours."
         ),
         advanced=True,
     )

@@ -6,6 +6,7 @@ import os
 from collections import deque
 
 from qgis.core import (
+    Qgis,
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
@@ -70,6 +71,12 @@ def style_hillshade(layer) -> None:
     if layer.crs().isGeographic():
         renderer.setZFactor(1.0 / 111_320.0)
     layer.setRenderer(renderer)
+    # Elevations are resampled before they are shaded: steps of nearest cells would show as stripes.
+    methods = provider.ResamplingMethod
+    provider.enableProviderResampling(True)
+    provider.setZoomedInResamplingMethod(methods.Cubic)
+    provider.setZoomedOutResamplingMethod(methods.Bilinear)
+    layer.setResamplingStage(Qgis.RasterResamplingStage.Provider)
 
 
 def set_mesh_crs(layer) -> None:

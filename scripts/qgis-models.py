@@ -36,6 +36,7 @@ class Model:
     def __init__(self, name, description):
         self.model = QgsProcessingModelAlgorithm(name, GROUP, "models")
         self.help = {"ALG_DESC": description, "ALG_CREATOR": "Terrain Wavelets"}
+        self.order = []
         self.n_inputs = 0
         self.n_steps = 0
 
@@ -45,13 +46,15 @@ class Model:
         component.setPosition(QPointF(120, 80 + 90 * self.n_inputs))
         self.model.addModelParameter(parameter, component)
         self.help[parameter.name()] = help_text
+        self.order.append(parameter.name())
         self.n_inputs += 1
 
     def step(self, child_id, algorithm, description, outputs=None, **parameters):
         """Add a step.
 
         A parameter is a value, ``input_("NAME")`` or ``result("child", "OUTPUT")``; ``outputs``
-        maps the step's output names to ``(name for a person, help)``.
+        maps the step's output names to ``(name for a person, help)``; a name with a ``!`` behind
+        it is an output that cannot be skipped.
         """
         child = QgsProcessingModelChildAlgorithm(algorithm)
         assert child.algorithm(), f"{algorithm} is not in this QGIS"
@@ -67,8 +70,10 @@ class Model:
             )
             child.addParameterSources(name, [source])
         model_outputs = {}
-        for k, (name, (label, help_text)) in enumerate((outputs or {}).items()):
+        for k, (name, (marked, help_text)) in enumerate((outputs or {}).items()):
+            label = marked.rstrip("!")
             output = QgsProcessingModelOutput(label, label)
+            output.setMandatory(marked.endswith("!"))
             output.setChildId(child_id)
             output.setChildOutputName(name)
             output.setPosition(child.position() + QPointF(60, 140 + 60 * k))
@@ -81,6 +86,7 @@ class Model:
     def write(self, file_name):
         """Write the model."""
         self.model.setHelpContent(self.help)
+        self.model.setParameterOrder(self.order)
         self.model.updateDestinationParameters()
         path = FOLDER / file_name
         assert self.model.toFile(str(path)), path
@@ -195,7 +201,7 @@ def dem_and_breaklines_to_mesh():
         INPUT=result("analyse", "OUTPUT"),
         LEVEL=0,
         outputs={
-            "MESH": ("Hydraulic mesh", "2DM file, a mesh layer in QGIS."),
+            "MESH": ("Hydraulic mesh!", "2DM file, a mesh layer in QGIS."),
             "TIN": ("Triangles of the mesh", "The same as polygons."),
         },
     )

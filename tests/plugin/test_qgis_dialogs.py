@@ -1,0 +1,145 @@
+"""Every dialog opens, and results look as they should; pictures of both are kept for the docs.
+
+Set ``TERRAIN_WAVELETS_PICTURES`` to a folder to keep the pictures.
+"""
+
+import os
+from pathlib import Path
+from unittest.mock import Mock
+
+import pytest
+from qgis_layers import hills, write_raster
+
+ALGORITHMS = (
+    "analysedem",
+    "analysepointcloud",
+    "analysetin",
+    "extractlevel",
+    "reconstruct",
+    "detaillayers",
+    "clusterdetails",
+    "qualityreport",
+    "DEM to coarse TIN and details",
+    "DEM and breaklines to hydraulic mesh",
+)
+KEPT = os.environ.get("TERRAIN_WAVELETS_PICTURES")
+
+
+@pytest.fixture
+def keep():
+    """Return a function that checks a picture, and saves it where the docs' pictures are made."""
+
+    def check_and_save(image, name):
+        assert not image.isNull()
+        colours = {
+            image.pixel(x, y)
+            for x in range(0, image.width(), 7)
+            for y in range(0, image.height(), 7)
+        }
+        assert len(colours) > 8, f"the picture {name} is blank"
+        if KEPT:
+            Path(KEPT).mkdir(parents=True, exist_ok=True)
+            assert image.save(str(Path(KEPT) / f"{name}.png"))
+
+    return check_and_save
+
+
+def picture_of(widget, width, height):
+    """Return what a widget shows."""
+    from qgis.PyQt.QtWidgets import QApplication
+
+    widget.resize(width, height)
+    widget.show()
+    for _ in range(5):
+        QApplication.processEvents()
+    image = widget.grab().toImage()
+    widget.close()
+    return image
+
+
+@pytest.mark.parametrize("algorithm", ALGORITHMS)
+def test_dialog_opens(provider, keep, algorithm):
+    from processing.gui.AlgorithmDialog import AlgorithmDialog
+
+    dialog = AlgorithmDialog(provider.algorithm(algorithm).create(), False, None)
+    labels = {p.description() for p in dialog.algorithm().parameterDefinitions()}
+    assert labels
+    keep(picture_of(dialog, 900, 620), "dialog_" + algorithm.lower().replace(" ", "_"))
+
+
+def test_toolbox_lists_the_provider(qgis, keep, monkeypatch):
+    from processing.gui import ProcessingToolbox as module  # noqa: N813 - the module has the class's name
+    from qgis.PyQt.QtCore import QSize, Qt
+
+    window = Mock()
+    window.iconSize.return_value = QSize(16, 16)
+    monkeypatch.setattr(module, "iface", window)
+    toolbox = module.ProcessingToolbox()
+    tree = toolbox.algorithmTree
+    tree.setFilterString("terrain wavelets")
+    model = tree.model()
+    names = [
+        model.index(row, 0).data(Qt.ItemDataRole.DisplayRole) for row in range(model.rowCount())
+    ]
+    assert "Terrain Wavelets" in names
+    tree.expandAll()
+    keep(picture_of(toolbox, 420, 560), "toolbox")
+
+
+@pytest.fixture(scope="module")
+def pyramid(qgis, data_folder, tmp_path_factory):
+    """Return the path of a pyramid; of real terrain where the data are at hand."""
+    import processing
+
+    folder = tmp_path_factory.mktemp("pictures")
+    path = data_folder / "dems" / "lidar_dem_400.tif"
+    if not path.is_file():
+        path = write_raster(folder / "d.tif", hills(200, 300).astype("float32"))
+    made = processing.run(
+        "terrainwavelets:analysedem",
+        {"INPUT": str(path), "LEVELS": 8, "OUTPUT": str(folder / "p.gpkg")},
+    )
+    return made["OUTPUT"]
+
+
+def map_of(layers, width=900, height=640):
+    """Return the map of styled layers."""
+    from qgis.core import QgsMapRendererParallelJob, QgsMapSettings
+    from qgis.PyQt.QtCore import QSize
+    from qgis.PyQt.QtGui import QColor
+
+    settings = QgsMapSettings()
+    settings.setLayers(layers)
+    settings.setDestinationCrs(layers[0].crs())
+    extent = layers[-1].extent()
+    extent.scale(0.5)
+    settings.setExtent(extent)
+    settings.setOutputSize(QSize(width, height))
+    settings.setBackgroundColor(QColor("white"))
+    job = QgsMapRendererParallelJob(settings)
+    job.start()
+    job.waitForFinished()
+    return job.renderedImage()
+
+
+def test_styled_results(qgis, pyramid, tmp_path, keep):
+    import processing
+    from qgis.core import QgsProcessingContext, QgsProject
+
+    project = QgsProject.instance()
+    context = QgsProcessingContext()
+    context.setProject(project)
+    for algorithm, parameters in (
+        ("extractlevel", {"LEVEL": 0, "TIN": "TEMPORARY_OUTPUT"}),
+        ("detaillayers", {"LAST_LEVEL": 3, "OUTPUT": "TEMPORARY_OUTPUT"}),
+        ("reconstruct", {"DEM": str(tmp_path / "dem.tif")}),
+    ):
+        processing.runAndLoadResults(
+            f"terrainwavelets:{algorithm}", {"INPUT": pyramid, **parameters}, context=context
+        )
+    by_name = {layer.name(): layer for layer in project.mapLayers().values()}
+    hillshade = by_name["Reconstructed DEM"]
+    keep(map_of([by_name["TIN of the level"]]), "result_tin")
+    keep(map_of([by_name["Details by level"], hillshade]), "result_details")
+    keep(map_of([hillshade]), "result_hillshade")
+    project.clear()
