@@ -1,7 +1,8 @@
 """Reversible multiresolution pyramids of terrain TINs by graph-based wavelet lifting."""
 
-from . import metrics, synthetic
+from . import coefficients, metrics, synthetic
 from .analysis import analyse
+from .denoising import denoise
 from .errors import (
     Cancelled,
     FilterError,
@@ -31,6 +32,8 @@ __all__ = [
     "TriangleMesh",
     "WaveletError",
     "analyse",
+    "coefficients",
+    "denoise",
     "metrics",
     "synthetic",
 ]

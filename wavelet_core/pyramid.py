@@ -199,6 +199,43 @@ class Pyramid:
         self._require_level(level)
         return self._integrals_by_level(level)[level]
 
+    def with_gains(
+        self,
+        gains: Mapping[int, float | Sequence[float]],
+        coarse: float | Sequence[float] = 1.0,
+    ) -> Pyramid:
+        """Return the pyramid with the details of each level multiplied.
+
+        Parameters
+        ----------
+        gains : mapping of int to float or sequence of float
+            By level, one number or one for each channel; levels not named keep 1.
+        coarse : float or sequence of float
+            Gain of the coarsest level's coefficients.
+
+        See Also
+        --------
+        wavelet_core.coefficients.scaled, wavelet_core.coefficients.band_gains
+        """
+        from .coefficients import scaled
+
+        return scaled(self, gains, coarse)
+
+    def denoised(self, sigma: float | None = None, **options: Any) -> Pyramid:
+        """Return the pyramid with thresholded details.
+
+        Parameters
+        ----------
+        sigma : float, optional
+            Standard deviation of the noise; by default estimated from the finest level.
+        **options
+            ``method``, ``strength``, ``local``, ``by_level`` and ``channels`` of
+            :func:`wavelet_core.coefficients.denoised`, which says what they mean.
+        """
+        from .coefficients import denoised
+
+        return denoised(self, sigma, **options)
+
     def with_parts(self, **changes: Any) -> Pyramid:
         """Return a pyramid of the same topology with other coarse coefficients or steps."""
         return replace(self, **changes)
