@@ -130,20 +130,16 @@ def detail_layers(record: PyramidRecord) -> Iterator[Layer]:
     names: list[str] = []
     for channel in pyramid.channels:
         names.append(_free_name(f"w_{channel}", [*names, *_RESERVED, *_DETAIL_FIELDS]))
-    meshes = pyramid.meshes(0)
-    next(meshes, None)
-    for level, (_, finer) in enumerate(meshes):
-        step = pyramid.steps[level]
-        ids = pyramid.vertex_ids(level + 1)[step.odd]
-        vectors = record.file_details(step.details)
+    for level, detail in pyramid.details():
+        vectors = record.file_details(detail.vectors)
         magnitude = np.linalg.norm(vectors, axis=1)
         yield Layer(
             detail_layer_name(level),
             "Point Z",
-            points_wkb(record.frame.to_file(finer.vertices[step.odd])),
+            points_wkb(record.frame.to_file(detail.positions)),
             {
-                "vertex_id": ids,
-                "level": np.full(len(ids), level, dtype=np.int32),
+                "vertex_id": detail.vertex_ids,
+                "level": np.full(len(vectors), level, dtype=np.int32),
                 **{name: vectors[:, k] for k, name in enumerate(names)},
                 "magnitude": magnitude,
             },
