@@ -5,12 +5,14 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest
 
-.PHONY: help demo test test-fast lint plugin clean
+.PHONY: help demo test test-fast test-qgis test-qgis-numpy2 lint plugin clean
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
 	@echo "make test       all tests, with numba and then without it"
 	@echo "make test-fast  the core's tests on small inputs, with numba only"
+	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
+	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"
 	@echo "make lint       ruff, mypy and numpydoc"
 	@echo "make plugin     the QGIS plugin as dist/terrain_wavelets.zip, from the last commit"
 	@echo "make clean      remove what the above made, except $(VENV)"
@@ -30,6 +32,13 @@ test: $(BIN)/.installed-dev
 
 test-fast: $(BIN)/.installed-dev
 	$(PYTEST) tests/core tests/test_imports.py -m "not large and not data" -x -q
+
+# Under CI these fail where they cannot run; elsewhere they say so in one line.
+test-qgis:
+	@bash scripts/qgis-test.sh
+
+test-qgis-numpy2:
+	@bash scripts/qgis-test.sh --chroot
 
 lint: $(BIN)/.installed-dev
 	$(BIN)/ruff check .

@@ -15,6 +15,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
+#: Some versions of the wrapper script fail where this program does not.
+COMMAND = shutil.which("qgis_process.bin") or shutil.which("qgis_process")
 HAS_QGIS = importlib.util.find_spec("qgis") is not None
 
 #: What a folder of tests may not collect without QGIS.

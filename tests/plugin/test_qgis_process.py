@@ -1,7 +1,6 @@
 """The provider through ``qgis_process``, in a process of its own, with and without packages."""
 
 import json
-import shutil
 import subprocess
 import sys
 import sysconfig
@@ -9,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from qgis_fixtures import COMMAND
 from qgis_layers import assert_same_raster, hills, write_raster
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-COMMAND = shutil.which("qgis_process.bin") or shutil.which("qgis_process")
 
 #: Put on the path of another process, this makes modules absent there.
 HIDE = "import sys\nfor name in {names!r}:\n    sys.modules[name] = None\n"

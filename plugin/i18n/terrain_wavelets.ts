@@ -1,0 +1,1142 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1">
+<context>
+  <name>TerrainWavelets</name>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Analysing (the first run also compiles, up to half a minute)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Coarse TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>GeoPackage (*.gpkg)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Measuring the errors of every level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>One GeoPackage with everything: the arrays from which every level is rebuilt exactly, the coarse TIN and the details of each level as styled layers.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>The triangles of the coarsest level, with elevation and slope.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Writing the pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>{} vertices, {} triangles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_pyramid_input.py"/>
+    <source>Changed since its analysis: {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_pyramid_input.py"/>
+    <source>GeoPackage that one of the analyses made.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_pyramid_input.py"/>
+    <source>Pyramid (*.gpkg)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_pyramid_input.py"/>
+    <source>Reading the pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_pyramid_input.py"/>
+    <source>{}: there is no such file; choose a pyramid.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>Analyse DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>Band</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>Band with the elevations.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>Raster of elevations, in any CRS; degrees are worked on in a local metric frame. Cells without data become holes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>Reading the DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>Turns a DEM into a reversible wavelet pyramid: a coarse TIN and one layer of details for each level of resolution, in one GeoPackage. From it &lt;i&gt;Extract level&lt;/i&gt; gives the terrain at any level and &lt;i&gt;Reconstruct&lt;/i&gt; the DEM itself, bit for bit.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>dem,raster,tin,pyramid,wavelet,multiresolution,level of detail</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Analyse point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>CRS of the points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Classes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Classes are numbers separated by commas, such as 2,9.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Instead of the CRS in the file, or where it has none.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Keep all other dimensions</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Keep what is not transformed (GPS time, flags, ...) in the pyramid, so that the reconstructed file has it too.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Names of further dimensions of the file, separated by commas.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 for ground and water. Empty for all points.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Other attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Point cloud file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Read with the Python package laspy, so no point cloud support in QGIS is needed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Reading the points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Triangulates the points of a LAS, LAZ or COPC file and turns them into a reversible wavelet pyramid. Attributes such as class, intensity, colour or height above ground are transformed together with the elevation. &lt;i&gt;Reconstruct&lt;/i&gt; gives the file back with its very integers.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Triangulating {} points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>las,laz,copc,lidar,point cloud,tin,pyramid,wavelet,multiresolution</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>{}: QGIS does not understand the CRS in the file; choose one.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>{}: there is no such file; choose a LAS or LAZ file.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Analyse points or TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Become edges of the TIN. Where they have no Z, they lie on the TIN of the points; where they cross, they are cut.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Breaklines</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Breaklines and clip polygons are for points; the edges of a triangle layer stay as they are. Take its vertices, or leave them out.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Clip polygon</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Field that locks points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Field with the elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Keep the vertices of breaklines, and so the lines, at every level.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Lock breaklines</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>No point is inside the clip polygon; check that the layers overlap.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Numeric fields of points that are transformed along with the elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Of points; empty for the Z of the geometry.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Only the terrain inside; its outline becomes edges of the TIN.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Points or triangles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Points where it holds anything but 0, false or NULL stay at every level.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Points with Z or with a field of elevations, or polygons with Z that are all triangles. Of points at the same x and y the lowest counts.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Reading the triangles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Turns a layer of points or of triangles into a reversible wavelet pyramid. Points are triangulated (Delaunay in plan), with breaklines as edges and clipped to a polygon if wanted. Locked points and the vertices of breaklines stay at every level, where they are and as high as they are.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>tin,points,triangles,breaklines,survey,pyramid,wavelet,multiresolution</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>&lt;i&gt;kmeans&lt;/i&gt;, or a &lt;i&gt;mixture&lt;/i&gt; of Gaussians of different size and shape.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>A raster of labels; each cell has that of the nearest vertex.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Accuracy in blocks left out, 0 to 1</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Accuracy: {:.1f} %</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Cell size of the raster</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Channels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Channels whose scales count, separated by commas: z and attributes. Empty for the geometry.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Choose the layer of training areas and its field of classes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Classes that stand for 'not known', separated by commas.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Cluster details</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Clustered vertices</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Clustering</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Empty for a number found from the data (2 to 10).</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Every input vertex with its label and how clearly it belongs there (0 to 1).</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Field with the class</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Gathering the spectrum of each vertex</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Groups terrain by its scale signature: how much detail each place has at each level. Without a teacher, places that are alike form clusters, numbered from smooth to rough. With training areas, or with the classes that some points of a LAS file have, the classes are learned and predicted for the rest.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>JSON (*.json)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>LAS classes are numbers separated by commas, such as 0,1.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>LAS classes to predict</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Learn from</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Learning the classes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Map of clusters</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Method</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>No vertex is inside a training area; check that the layers overlap.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Number of clusters</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Of samples and starts; the same seed gives the same result.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Polygons inside which the class is known.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Predict blocks of the map from the others, and tell how many of their labels come out right. Takes several times as long.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Predicting blocks of the map from the others</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Seed</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Size and spectrum of each cluster.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Summary of the clusters</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Tell the accuracy</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Training areas</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Whether clusters are found, or classes learned, and from what.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Whole numbers from 0 to 254.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>class</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>cluster</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>cluster,classification,scale signature,spectrum,landform,k-means,machine learning</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>A raster with one band a level: the root mean square detail around each place, in the unit of elevation. It maps at which scale the terrain is rough.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Coarsest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Detail layers</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Details by level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Details of this level and coarser ones; empty for all.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Details of this level and finer ones.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Energy by level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Fields: &lt;i&gt;vertex_id&lt;/i&gt; in the input, &lt;i&gt;level&lt;/i&gt;, &lt;i&gt;w_…&lt;/i&gt; the detail of a channel, &lt;i&gt;magnitude&lt;/i&gt; the length of the detail vector.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Finest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Gathering the energy of each level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Largest magnitude</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Leave out points whose detail vector is shorter (in the unit of elevation where elevation alone is lifted).</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Number of points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Shows at which scale the terrain has its detail: a point for every vertex that the analysis removed, with the level at which it went and its detail vector (the wavelet coefficients). Points are coloured by level and sized by magnitude, as in Fig. 10b of the paper. Level 0 is the coarsest.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Smallest magnitude</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>The coarsest level, {}, is finer than the finest, {}; exchange them.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>This pyramid has no level, so it has no details.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>wavelet coefficients,detail,scale,vertex-frequency,points,pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>0 is the coarsest; the number of levels is the input itself.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>2DM mesh (*.2dm);;PLY (*.ply);;OBJ (*.obj)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Extract level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points the mean spacing of the level's vertices.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Largest error of the surface, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Mesh of the level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>No output is chosen; choose a TIN, vertices, a raster or a mesh.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Number of triangles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Number of vertices</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Points with elevation and attributes; &lt;i&gt;vertex_id&lt;/i&gt; is that of the input.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>RMSE of the surface, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Raster of the level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the analysis says how large and how exact each level is.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Synthesising level {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>TIN of the level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>The TIN evaluated at the cell centres, 32-bit floats.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Triangles with mean elevation and slope (degrees).</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Vertices of the level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>tin,mesh,2dm,raster,level of detail,generalise,coarse,wavelet,pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>All numbers of the report, for other programs.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Choose a file for the report.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Figures of the report</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>HTML page (*.html)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Levels are numbers separated by commas, such as 0,4,8.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Levels to picture</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Measuring and drawing</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Numbers separated by commas. Empty for those with about a quarter and a twentieth of the vertices, and the coarsest.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Opens in the results viewer and in any browser.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Quality report</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Writes one HTML page on a pyramid: sizes, errors and triangle quality of every level, curves of the RMSE, histograms of the details, hillshades of the input and of chosen levels, where the error is, and all parameters. The page needs no network.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>report,html,rmse,error,statistics,triangle quality,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>'yes' if bit for bit the original</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>For a pyramid of a DEM.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>For a pyramid of a point cloud file. Needs the Python package laspy.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>LAZ (*.laz);;LAS (*.las)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>Reconstruct</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>Reconstructed DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>Reconstructed TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>Reconstructed point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>Synthesises the finest level of a pyramid and gives back what it was made from: the DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with its very integers, in its order, or the TIN. A filtered pyramid gives the filtered terrain. Choose the output that fits the pyramid; the others stay empty.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>Synthesising the finest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>The triangles of the finest level, for a pyramid of any kind.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>This pyramid was made from a DEM; choose where the DEM goes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>This pyramid was made from a TIN; choose where the TIN goes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>Also returned</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>Analysis</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>Cancelled; nothing was written.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>Details</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>Parameters</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>Quality</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>Reconstruction</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
+    <source>There is not enough memory for this input (some 700 bytes a vertex are needed). Cut it, or take a coarser one.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/dependencies.py"/>
+    <source>Terrain Wavelets needs Python {} or later, and this QGIS runs Python {}; install a newer QGIS.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/dependencies.py"/>
+    <source>The Python package numba is missing: the work runs some hundred times slower and large inputs are refused. Install it {} and start QGIS again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/dependencies.py"/>
+    <source>in Terminal: {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/dependencies.py"/>
+    <source>in a terminal: {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/dependencies.py"/>
+    <source>in the OSGeo4W Shell (Start menu, QGIS): {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/dependencies.py"/>
+    <source>missing Python package: {names}. Install it {remedy} and start QGIS again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>&lt;i&gt;z&lt;/i&gt;: elevation and attributes, so that x and y stay and every level is a valid TIN; &lt;i&gt;xyz&lt;/i&gt;: all coordinates, as in the paper, where some triangles of a coarse level may be flipped in plan.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>By default the unit that the CRS states; where it states none, metres for a geographic CRS and the unit of x and y for any other. Results keep the input's unit.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>How a removed vertex is estimated from its neighbours; what is left over is its detail. In the paper: &lt;i&gt;geometric&lt;/i&gt; GL, &lt;i&gt;uniform&lt;/i&gt; UG, &lt;i&gt;cotangent&lt;/i&gt; CL, &lt;i&gt;nnls&lt;/i&gt; NNLS (non-negative least squares), &lt;i&gt;least_squares&lt;/i&gt; LS (can be unstable); &lt;i&gt;barycentric&lt;/i&gt;: from the coarse triangle that now covers it; &lt;i&gt;plane&lt;/i&gt;: from the plane fitted to the neighbours.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>How details are handed on to the vertices that stay. In the paper: &lt;i&gt;minimum_norm&lt;/i&gt; MN (keeps the weighted mean height at every level), &lt;i&gt;martinez_ortega&lt;/i&gt; MO, &lt;i&gt;one_ring_mean&lt;/i&gt; ORMP; &lt;i&gt;none&lt;/i&gt; keeps heights as they are (subsampling).</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>How many steps of analysis at most (the paper's L). Each removes about a quarter of the vertices, so 12 levels leave some 2 %. Fewer come out where nothing more can go. Empty for 12, or, with a rule below, for as many as that takes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Lifted coordinates</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Most levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>No input point is farther above or below the coarsest level, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Partition</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Prediction filter</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Stop at this RMSE</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Stop at this largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Stop at this number of vertices</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>The coarsest level has exactly so many vertices, if it can get there.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>The same for the root mean square over all input points, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Update filter</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Weight of bending energy</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Weight of curvature in the cost of the &lt;i&gt;quadric&lt;/i&gt; partition; no unit.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Which vertices go at a level (the paper's odd vertices). &lt;i&gt;quadric&lt;/i&gt;: those of least cost by generalised quadric and bending energy, as in the paper; &lt;i&gt;colouring&lt;/i&gt;: regardless of shape, the paper's baseline; &lt;i&gt;random&lt;/i&gt;: in random order.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/geopackage.py"/>
+    <source>{}: layer {} cannot be written ({}); check the disk and the name.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/lines.py"/>
+    <source>{}: there is no polygon to clip by.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/provider.py"/>
+    <source>Terrain Wavelets: reversible multiresolution TINs</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>Largest error of the coarsest surface, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>Number of levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>RMSE of the coarsest surface at all input points, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>RMSE of the coefficients at the coarsest level (no unit)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>There is no level {}; the levels of this pyramid are 0 (coarsest) to {}.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>Triangles of the coarsest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>Triangles of the input</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>Vertices of the coarsest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>Vertices of the input</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/pyramids.py"/>
+    <source>level   vertices  triangles  RMSE of surface  largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/raster_output.py"/>
+    <source>{}: GDAL could not write this raster ({}); check the disk and the name.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/raster_output.py"/>
+    <source>{}: no raster of {} can be written under this name; use one ending in .tif.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/rasters.py"/>
+    <source>{}: band {} holds values of type {}; elevations must be real numbers.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/rasters.py"/>
+    <source>{}: the raster cannot be read ({}); the file is damaged, get it again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/styles.py"/>
+    <source>level {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/training.py"/>
+    <source>Feature {}: field {} holds {}; classes are whole numbers from 0 to 254.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/vectors.py"/>
+    <source>Feature {}: field {} holds {}, which is no number; fill or filter it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/vectors.py"/>
+    <source>The features could not be written ({}); check the disk and the name.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/vectors.py"/>
+    <source>{}: feature {} is no triangle; triangulate the layer first, or give a point layer.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/vectors.py"/>
+    <source>{}: the points have no Z; choose the field with the elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/vectors.py"/>
+    <source>{}: the triangles have no Z, so they hold no elevations.</source>
+    <translation type="unfinished"></translation>
+  </message>
+</context>
+</TS>
