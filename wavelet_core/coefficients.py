@@ -15,6 +15,7 @@ from .errors import OptionError
 from .mesh import TriangleMesh
 from .prediction import Removal, predict
 from .pyramid import Pyramid
+from .spectrum import level_spacings
 from .transform import LinearStep, Transform
 
 Gains = Mapping[int, float | Sequence[float]]
@@ -25,8 +26,10 @@ SOFT_THRESHOLD = 1.5
 METHODS = ("bayes", "soft", "hard")
 #: The median absolute deviation of a normal distribution with standard deviation 1.
 NORMAL_MAD = 0.6744897501960817
-#: Columns of noise that are sent through a transform to measure what arrives at each level.
-NOISE_COLUMNS = 4
+#: Columns of noise that are sent through a transform to measure what arrives at each level: few
+#: for a large mesh, whose levels average over many details, more for a small one.
+LEAST_NOISE_COLUMNS, MOST_NOISE_COLUMNS = 4, 64
+NOISE_SAMPLES = 100_000
 #: Rounds of averaging over rings that a local energy is taken over.
 LOCAL_ROUNDS = 4
 
@@ -67,31 +70,6 @@ def scaled(pyramid: Pyramid, gains: Gains, coarse: float | Sequence[float] = 1.0
     return pyramid.with_parts(steps=steps, coarse=frozen(pyramid.coarse * coarse_gain))
 
 
-def edge_lengths(pyramid: Pyramid) -> FloatArray:
-    """Return the median edge length in plan of each level, ``(n_levels + 1,)``, in ground units.
-
-    The details at ``level`` are what the mesh of level + 1 has and that of ``level`` has not, so
-    their size on the ground is between ``edge_lengths[level + 1]`` and ``edge_lengths[level]``.
-    """
-    lengths = np.zeros(pyramid.n_levels + 1)
-    if pyramid.horizontal is None:
-        plans = ((level, mesh.vertices[:, :2], mesh.faces) for level, mesh in pyramid.meshes())
-        for level, plan, faces in plans:
-            lengths[level] = _median_edge(plan, faces)
-        return lengths
-    ids, faces_from_finest = pyramid._ids_by_level(0), pyramid._faces_by_level(0)
-    for level, faces in zip(range(pyramid.n_levels, -1, -1), faces_from_finest, strict=True):
-        lengths[level] = _median_edge(pyramid.horizontal[ids[level]], faces)
-    return lengths
-
-
-def _median_edge(plan: FloatArray, faces: NDArray) -> float:
-    if not len(faces):
-        return 0.0
-    corners = plan[faces]
-    return float(np.median(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)))
-
-
 def band_gains(
     pyramid: Pyramid,
     levels: tuple[int, int] | None = None,
@@ -105,8 +83,9 @@ def band_gains(
     levels : (int, int), optional
         First and last level of the details to keep.
     lengths : (float, float), optional
-        Instead, shortest and longest size on the ground, in the unit of x and y: a level is
-        kept if the geometric mean of its two meshes' median edge lengths is in between.
+        Instead, shortest and longest size on the ground, in the unit of x and y: details are
+        kept if the median edge length of the mesh that they were taken from is in between, as
+        :func:`wavelet_core.spectrum.level_spacings` tells it.
 
     Raises
     ------
@@ -123,8 +102,7 @@ def band_gains(
             _as_level(level, pyramid)
         sizes: Sequence[float] = range(pyramid.n_levels)
     else:
-        edges = edge_lengths(pyramid)
-        sizes = np.sqrt(edges[1:] * edges[:-1]).tolist()
+        sizes = level_spacings(pyramid)[1:].tolist()
     return {level: float(low <= size <= high) for level, size in enumerate(sizes)}
 
 
@@ -144,6 +122,37 @@ def _as_gain(gain: float | Sequence[float], n_channels: int, level: int | str) -
             f"{n_channels} channels."
         )
     return array
+
+
+def relifted(pyramid: Pyramid, mesh: TriangleMesh) -> Pyramid:
+    """Return the pyramid of another surface over the same vertices, by the same filters.
+
+    Parameters
+    ----------
+    pyramid : Pyramid
+    mesh : TriangleMesh
+        With the vertices of the pyramid's finest mesh in their order and the same attributes;
+        with signal "z" its x and y are not looked at.
+
+    Raises
+    ------
+    OptionError
+        Another number of vertices, or other attributes.
+    """
+    n_vertices = pyramid.n_vertices(pyramid.n_levels)
+    if mesh.n_vertices != n_vertices or mesh.attribute_names != pyramid.attribute_names:
+        raise OptionError(
+            f"the mesh has {mesh.n_vertices} vertices with attributes {mesh.attribute_names}, the "
+            f"pyramid {n_vertices} with {pyramid.attribute_names}; give the same."
+        )
+    first = 2 if pyramid.signal == "z" else 0
+    columns = np.column_stack([mesh.vertices[:, first:], mesh.attributes])
+    coarse, details = Transform.from_pyramid(pyramid).analyse(columns)
+    steps = tuple(
+        replace(step, details=frozen(detail))
+        for step, detail in zip(pyramid.steps, details, strict=True)
+    )
+    return pyramid.with_parts(coarse=frozen(coarse), steps=steps)
 
 
 # -- noise ---------------------------------------------------------------------------------------
@@ -208,7 +217,9 @@ def noise_gains(transform: Transform, seed: int = 0) -> list[FloatArray]:
     white noise leave there when they are really transformed.
     """
     n_fine = len(transform.steps[-1].odd) + len(transform.steps[-1].even) if transform.steps else 0
-    noise = np.random.default_rng(seed).standard_normal((n_fine, NOISE_COLUMNS))
+    wanted = NOISE_SAMPLES // max(n_fine, 1)
+    n_columns = min(max(wanted, LEAST_NOISE_COLUMNS), MOST_NOISE_COLUMNS)
+    noise = np.random.default_rng(seed).standard_normal((n_fine, n_columns))
     measured = transform.analyse(noise)[1]
     variance = np.ones(n_fine)
     gains: list[FloatArray] = []
