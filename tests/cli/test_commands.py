@@ -174,3 +174,23 @@ def test_quiet_with_json_prints_figures_only(done, tif, tmp_path):
     said = done("analyse", tif, tmp_path / "a.gpkg", "--levels", 1, "--quiet", "--json")
     assert said.figures["n_vertices"] == 2000
     assert said.err == ""
+
+
+def test_names_with_blanks_and_accents(done, tif, tmp_path):
+    import shutil
+
+    folder = tmp_path / "Gelände Süd, 2024 (neu)"
+    folder.mkdir()
+    shutil.copy(tif, folder / "Höhen #1.tif")
+    done("analyse", folder / "Höhen #1.tif", folder / "Pyramide 1.gpkg", "--levels", 2)
+    done("reconstruct", folder / "Pyramide 1.gpkg", folder / "zurück.tif")
+    done("extract", folder / "Pyramide 1.gpkg", folder / "grob.2dm")
+    assert_same_raster(tif, folder / "zurück.tif")
+    assert "Höhen #1.tif" in done("info", folder / "Pyramide 1.gpkg").out
+
+
+def test_a_path_without_a_folder(done, tif, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done("analyse", tif, "a.gpkg", "--levels", 1)
+    done("extract", "a.gpkg", "a.ply")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gpkg", "a.ply"]
