@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags  # diags_array is not in SciPy 1.10
 
 from ._validate import FloatArray, frozen
@@ -318,14 +318,14 @@ def denoised(
     if by_level and sigma is not None:
         raise OptionError("sigma and by_level exclude each other; give one.")
     check_sigma(sigma)
-    columns = [channel_index(pyramid.channels, name) for name in channels]
+    columns = {name: channel_index(pyramid.channels, name) for name in channels}
     if not pyramid.steps:
         return pyramid
     transform = Transform.from_pyramid(pyramid)
     gains = noise_gains(transform)
     changed = [step.details.copy() for step in pyramid.steps]
-    for column in columns:
-        deviation = sigma if sigma is not None else _estimate(pyramid, column)
+    for name, column in columns.items():
+        deviation = sigma if sigma is not None else channel_noise(pyramid, name)
         for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
             detail = changed[level][:, column]
             noise = gain * (_deviation(detail / gain) if by_level else deviation)
@@ -357,11 +357,13 @@ def _threshold(
     return noise / np.sqrt(above)
 
 
-def _estimate(pyramid: Pyramid, column: int) -> float:
+def channel_noise(pyramid: Pyramid, channel: str = "z") -> float:
+    """Return the standard deviation of white noise in a channel; see :func:`estimate_noise`."""
+    column = channel_index(pyramid.channels, channel)
     mesh = pyramid.synthesise()
-    values = np.column_stack([mesh.vertices, mesh.attributes])
     first = 2 if pyramid.signal == "z" else 0
-    return estimate_noise(mesh, values[:, first + column])
+    values = np.column_stack([mesh.vertices, mesh.attributes])[:, first + column]
+    return estimate_noise(mesh, values)
 
 
 def _deviation(details: FloatArray) -> float:

@@ -1,0 +1,271 @@
+"""``filter FILE OUT``: smooth, sharpen, isolate a band of scales, or take out noise."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wavelet_gis.commands._options import add_overwrite_argument
+from wavelet_gis.console import Console
+
+if TYPE_CHECKING:
+    from wavelet_core import Pyramid
+    from wavelet_gis.record import PyramidRecord
+
+HELP = "Change chosen scales of a pyramid or take out noise; write a DEM, a LAS file or a pyramid."
+
+#: Stands for the standard deviation of the noise where it is not given.
+ESTIMATED = True
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("file", help="a pyramid file")
+    parser.add_argument(
+        "output",
+        help="ending in .gpkg for a pyramid; else a raster or a point cloud, as the input was",
+    )
+    scales = parser.add_argument_group("scales")
+    scales.add_argument(
+        "--gain",
+        type=_gain,
+        action="append",
+        default=[],
+        metavar="LEVEL=G",
+        help="multiply the details of a level: 0 drops them, 2 doubles them; again for others",
+    )
+    band = scales.add_mutually_exclusive_group()
+    band.add_argument(
+        "--band", type=_levels, metavar="LO:HI", help="keep the details of these levels only"
+    )
+    band.add_argument(
+        "--band-metres",
+        type=_metres,
+        metavar="LO:HI",
+        help="keep details of this size on the ground only (median edge length of the mesh they "
+        "belong to), in metres where the CRS tells its unit, else in its own; 'info' and "
+        "'details' list the sizes. An open end is left empty, as in 10:",
+    )
+    scales.add_argument(
+        "--no-coarse",
+        action="store_true",
+        help="leave out the coarsest surface too, so that the bands remain by themselves",
+    )
+    noise = parser.add_argument_group("noise")
+    noise.add_argument(
+        "--denoise",
+        type=_sigma,
+        nargs="?",
+        const=ESTIMATED,
+        metavar="SIGMA",
+        help="take out white noise of this standard deviation, in the unit of z; estimated where "
+        "it is not given. Before any gain",
+    )
+    noise.add_argument(
+        "--pyramids",
+        type=int,
+        default=24,
+        metavar="N",
+        help="average over so many pyramids in random order (default 24); 0: threshold the "
+        "details of this pyramid alone, which is quick and leaves traces of its triangles",
+    )
+    noise.add_argument(
+        "--channel",
+        action="append",
+        metavar="NAME",
+        help="to take noise from (default z); again for others",
+    )
+    add_overwrite_argument(parser)
+
+
+def run(arguments: argparse.Namespace, console: Console) -> None:
+    """Carry the command out."""
+    from wavelet_core.errors import OptionError
+    from wavelet_gis.atomic import check_output, new_file
+    from wavelet_gis.pyramid_file import read_pyramid
+
+    check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
+    asks_scales = bool(arguments.gain or arguments.band or arguments.band_metres)
+    if not asks_scales and not arguments.no_coarse and arguments.denoise is None:
+        raise OptionError("nothing to change; give --gain, --band, --band-metres or --denoise.")
+    record = read_pyramid(arguments.file)
+    _check_suffix(arguments.output, record)
+    pyramid, done, figures = record.pyramid, [], {}
+    if arguments.denoise is not None:
+        pyramid, figures = _denoised(record, arguments, console)
+        done.append(_denoise_line(figures))
+    if asks_scales or arguments.no_coarse:
+        gains = _gains(record, arguments)
+        pyramid = pyramid.with_gains(gains, 0.0 if arguments.no_coarse else 1.0)
+        figures["gains"] = gains
+        done.append(_gains_line(gains, arguments.no_coarse))
+    changed = record.with_pyramid(pyramid, "; ".join(done))
+    with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
+        _write(scratch, arguments.output, changed, console)
+    for line in done:
+        console.say(line)
+    console.say(str(arguments.output))
+    console.figures({"output": str(arguments.output), **figures, **_change(record, changed)})
+
+
+def _gains(record: PyramidRecord, arguments: argparse.Namespace) -> dict[int, float]:
+    from wavelet_core.coefficients import band_gains
+
+    gains: dict[int, float] = {}
+    if arguments.band is not None:
+        gains = band_gains(record.pyramid, levels=arguments.band)
+    elif arguments.band_metres is not None:
+        unit = _working_units_a_metre(record)
+        low, high = (bound * unit for bound in arguments.band_metres)
+        gains = band_gains(record.pyramid, lengths=(low, high))
+    for level, gain in arguments.gain:
+        gains[level] = gain * gains.get(level, 1.0)
+    return gains
+
+
+def _working_units_a_metre(record: PyramidRecord) -> float:
+    """Return how many units of the working frame make a metre: 1 unless the CRS counts feet."""
+    is_metric = record.system.kind == "geographic"
+    return 1.0 if is_metric else 1.0 / record.system.horizontal_unit
+
+
+def _denoised(
+    record: PyramidRecord, arguments: argparse.Namespace, console: Console
+) -> tuple[Pyramid, dict[str, Any]]:
+    """Return the denoised pyramid, and what noise was taken for it."""
+    from wavelet_core import denoise
+    from wavelet_core.coefficients import channel_noise, relifted
+
+    pyramid = record.pyramid
+    channels = tuple(arguments.channel or ("z",))
+    sigmas = {}
+    with console.progress("denoising") as progress:
+        for k, name in enumerate(channels):
+            unit = record.frame.z_scale if name == "z" else 1.0
+            sigma = (
+                channel_noise(pyramid, name)
+                if arguments.denoise is ESTIMATED
+                else arguments.denoise * unit
+            )
+            sigmas[name] = sigma / unit
+            if arguments.pyramids == 0:
+                pyramid = pyramid.denoised(sigma, channels=[name])
+                continue
+            mesh = denoise(
+                pyramid.synthesise(),
+                sigma,
+                n_pyramids=arguments.pyramids,
+                channels=[name],
+                locked=pyramid.locked,
+                progress=lambda fraction, k=k: progress((k + fraction) / len(channels)),
+            )
+            pyramid = relifted(pyramid, mesh)
+    return pyramid, {"sigma": sigmas, "n_pyramids": arguments.pyramids}
+
+
+def _write(
+    scratch: str | os.PathLike[str], output: str, record: PyramidRecord, console: Console
+) -> None:
+    if Path(output).suffix.lower() == ".gpkg":
+        from wavelet_gis.layers import coarse_layers, detail_layers
+        from wavelet_gis.pyramid_file import write_pyramid
+        from wavelet_gis.vector import add_layers
+
+        with console.progress("writing") as progress:
+            write_pyramid(scratch, record, progress)
+        add_layers(scratch, [*coarse_layers(record), *detail_layers(record)], record.system)
+        return
+    from wavelet_core import TriangleMesh
+    from wavelet_gis.commands.extract import write_tin
+    from wavelet_gis.dem import Dem
+    from wavelet_gis.pointcloud import write_cloud
+    from wavelet_gis.raster import write_dem
+
+    changed = record.restore()
+    if isinstance(changed, Dem):
+        write_dem(scratch, changed, record.system.wkt)
+    elif isinstance(changed, TriangleMesh):
+        write_tin(scratch, record, record.pyramid.synthesise(), record.pyramid.n_levels)
+    else:
+        write_cloud(scratch, changed)
+
+
+def _check_suffix(output: str, record: PyramidRecord) -> None:
+    """Refuse an output of another kind than the input was, before the long work."""
+    from wavelet_gis.errors import OutputFileError
+    from wavelet_gis.meshfiles import MESH_SUFFIXES
+    from wavelet_gis.terrain import CLOUD_SUFFIXES
+
+    suffix = Path(output).suffix.lower()
+    if suffix == ".gpkg":
+        return
+    fits, wanted = {
+        "points": (suffix in CLOUD_SUFFIXES, "a point cloud; give .las, .laz"),
+        "tin": (suffix in MESH_SUFFIXES, "a TIN; give .ply, .2dm, .obj"),
+        "raster": (
+            suffix not in (*CLOUD_SUFFIXES, *MESH_SUFFIXES, ""),
+            "a raster; give .tif",
+        ),
+    }[record.source.kind]
+    if not fits:
+        raise OutputFileError(
+            f"{output}: the pyramid was made from {wanted} or, for a pyramid, .gpkg."
+        )
+
+
+def _change(before: PyramidRecord, after: PyramidRecord) -> dict[str, float]:
+    """Return how far z has moved, in the input's unit."""
+    import numpy as np
+
+    z = [r.pyramid.synthesise().vertices[:, 2] for r in (before, after)]
+    moved = (z[1] - z[0]) / before.frame.z_scale
+    return {
+        "rms_change": float(np.sqrt(np.mean(moved**2))) if len(moved) else 0.0,
+        "largest_change": float(np.abs(moved).max(initial=0.0)),
+    }
+
+
+def _denoise_line(figures: dict[str, Any]) -> str:
+    sigmas = ", ".join(f"{name} {sigma:.4g}" for name, sigma in figures["sigma"].items())
+    how = f"average of {figures['n_pyramids']} pyramids" if figures["n_pyramids"] else "thresholds"
+    return f"denoised by {how}, standard deviation of the noise: {sigmas}"
+
+
+def _gains_line(gains: dict[int, float], without_coarse: bool) -> str:
+    named = ", ".join(f"{level}={gain:g}" for level, gain in sorted(gains.items()))
+    return f"gains {named or 'unchanged'}" + (", without the coarse surface" * without_coarse)
+
+
+def _gain(text: str) -> tuple[int, float]:
+    level, _, gain = text.partition("=")
+    try:
+        return int(level), float(gain)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no LEVEL=G such as 5=0.5") from None
+
+
+def _levels(text: str) -> tuple[int, int]:
+    low, _, high = text.partition(":")
+    try:
+        return int(low), int(high)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no LO:HI such as 2:4") from None
+
+
+def _metres(text: str) -> tuple[float, float]:
+    low, colon, high = text.partition(":")
+    try:
+        if not colon:
+            raise ValueError
+        return float(low or 0.0), float(high or "inf")
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no LO:HI such as 5:50 or 10:") from None
+
+
+def _sigma(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
