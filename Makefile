@@ -9,7 +9,7 @@ PYTEST := $(BIN)/python -m pytest
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
-	@echo "make test       all tests, with numba and then without it"
+	@echo "make test       all tests, with numba and then without it, and the plugin's in QGIS"
 	@echo "make test-fast  the core's tests on small inputs, with numba only"
 	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
 	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"
@@ -29,6 +29,7 @@ demo: $(BIN)/.installed-demo
 test: $(BIN)/.installed-dev
 	$(PYTEST)
 	TERRAIN_WAVELETS_NO_NUMBA=1 $(PYTEST) tests/core -m "not large and not data"
+	@$(MAKE) --no-print-directory test-qgis
 
 test-fast: $(BIN)/.installed-dev
 	$(PYTEST) tests/core tests/test_imports.py -m "not large and not data" -x -q

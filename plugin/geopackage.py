@@ -78,7 +78,7 @@ def _create(path, layer, wkt) -> None:
 def _insert(path, layer, feedback) -> None:
     from wavelet_gis.geopackage import open_for_writing
 
-    names = ", ".join(f'"{name}"' for name in ("geom", *layer.fields))
+    names = ", ".join(_quoted(name) for name in ("geom", *layer.fields))
     marks = ", ".join("?" * (1 + len(layer.fields)))
     columns = [column.tolist() for column in layer.fields.values()]
     with open_for_writing(path) as connection:
@@ -92,7 +92,8 @@ def _insert(path, layer, feedback) -> None:
             stop = start + CHUNK
             blobs = [header + wkb for wkb in layer.geometry[start:stop]]
             connection.executemany(
-                f'INSERT INTO "{layer.name}" ({names}) VALUES ({marks})',
+                # Names cannot be bound; they are quoted.
+                f"INSERT INTO {_quoted(layer.name)} ({names}) VALUES ({marks})",  # nosec B608
                 zip(blobs, *(column[start:stop] for column in columns), strict=True),
             )
         if len(layer.geometry):
@@ -101,6 +102,11 @@ def _insert(path, layer, feedback) -> None:
                 "WHERE table_name = ?",
                 (*_bounds(layer), layer.name),
             )
+
+
+def _quoted(name: str) -> str:
+    """Return a name as SQL takes it, whatever is in it."""
+    return '"' + name.replace('"', '""') + '"'
 
 
 def _index(path, layer) -> None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from xml.sax.saxutils import quoteattr
-
 import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_gis.layers import Layer
 from wavelet_gis.record import PyramidRecord
+from wavelet_gis.styles import quoted
 from wavelet_gis.wkb import points_wkb
 
 __all__ = ["label_layer"]
@@ -83,7 +82,7 @@ def _style(field: str, labels: list[int], colours: dict[int, tuple[int, int, int
             'type="integer"/>'
         )
         options = "".join(
-            f'<Option type="QString" name={quoteattr(key)} value={quoteattr(value)}/>'
+            f'<Option type="QString" name={quoted(key)} value={quoted(value)}/>'
             for key, value in (
                 ("name", "circle"),
                 ("color", f"{red},{green},{blue},255"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,8 +138,7 @@ def cloud_with_classes(record: PyramidRecord, labels: IntArray) -> PointCloud:
     source = record.source
     if not isinstance(source, PointSource):
         raise OptionError("the pyramid was not made from a point cloud; write .gpkg or .tif.")
-    cloud = record.restore()
-    assert isinstance(cloud, PointCloud)
+    cloud = cast(PointCloud, record.restore())
     is_kept = np.ones(source.n_points, dtype=bool)
     is_kept[source.dropped] = False
     of_point = np.full(source.n_points, NOT_KNOWN, dtype=np.int64)

@@ -6,8 +6,8 @@ coloured by level. Written as text: QGIS 3.28 to 4 read it, and nothing need be 
 
 from __future__ import annotations
 
+from html import escape
 from itertools import pairwise
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,11 @@ _SMALLEST, _LARGEST = 0.05, (0.8, 4.0)
 _MAP_WIDTH = 250.0
 
 
+def quoted(text: str) -> str:
+    """Return a text as the value of an XML attribute, quotation marks included."""
+    return f'"{escape(text)}"'
+
+
 def tin_style(elevation: NDArray[np.float64]) -> str:
     """QML of a TIN, its triangles coloured by the field ``elevation``.
 
@@ -61,7 +66,7 @@ def tin_style(elevation: NDArray[np.float64]) -> str:
     symbols, ranges = [], []
     for k, (low, high) in enumerate(pairwise(breaks)):
         symbols.append(_fill_symbol(k, _TERRAIN[k * len(_TERRAIN) // (len(breaks) - 1)]))
-        label = quoteattr(f"{low:.4g} - {high:.4g}")
+        label = quoted(f"{low:.4g} - {high:.4g}")
         ranges.append(
             f'<range symbol="{k}" lower="{low!r}" upper="{high!r}" label={label} render="true"/>'
         )
@@ -154,7 +159,7 @@ def _single_marker(
             '<Option type="QString" name="name" value=""/>'
             '<Option type="Map" name="properties"><Option type="Map" name="size">'
             '<Option type="bool" name="active" value="true"/>'
-            f'<Option type="QString" name="expression" value={quoteattr(size_expression)}/>'
+            f'<Option type="QString" name="expression" value={quoted(size_expression)}/>'
             '<Option type="int" name="type" value="3"/></Option></Option>'
             '<Option type="QString" name="type" value="collection"/></Option>'
             "</data_defined_properties>"
@@ -170,7 +175,7 @@ def _single_marker(
 
 def _options(values: dict[str, str]) -> str:
     inner = "".join(
-        f'<Option type="QString" name={quoteattr(name)} value={quoteattr(value)}/>'
+        f'<Option type="QString" name={quoted(name)} value={quoted(value)}/>'
         for name, value in values.items()
     )
     return f'<Option type="Map">{inner}</Option>'

@@ -33,9 +33,8 @@ def test_the_zip_holds_the_plugin_and_no_more(archive):
     assert {"wavelet_core/__init__.py", "wavelet_gis/pyramid_file.py"} <= inside
     assert any(name.startswith("processing_models/") for name in inside)
     assert {Path(name).suffix for name in inside} <= ALLOWED
-    assert not any(
-        part in name for name in inside for part in ("test", "benchmark", ".ci", "__pycache__")
-    )
+    for part in ("test", "benchmark", ".ci", "__pycache__"):
+        assert not [name for name in inside if part in name]
     assert len(archive) < 2 << 20
 
 
