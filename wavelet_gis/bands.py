@@ -49,7 +49,7 @@ class Bands:
 def grid_of(
     record: PyramidRecord, mesh: TriangleMesh, cell_size: float | None = None
 ) -> GridGeometry:
-    """The grid on which values of a pyramid are shown.
+    """Return the grid on which values of a pyramid are shown.
 
     Parameters
     ----------
@@ -93,8 +93,9 @@ def value_bands(
     """
     geometry = grid_of(record, mesh, cell_size)
     values = np.full((len(names), *geometry.shape), np.nan, dtype=np.float32)
-    if _is_cell_for_cell(record, mesh, cell_size):
-        values[:, record.source.valid] = columns.T
+    valid = _valid_cells(record, mesh, cell_size)
+    if valid is not None:
+        values[:, valid] = columns.T
     else:
         in_file = record.file_mesh(mesh)
         for band, column in zip(values, columns.T, strict=True):
@@ -136,8 +137,9 @@ def label_band(
     stored = np.where(labels < 0, NO_LABEL, labels).astype(np.uint8)
     geometry = grid_of(record, mesh, cell_size)
     values = np.full((1, *geometry.shape), NO_LABEL, dtype=np.uint8)
-    if _is_cell_for_cell(record, mesh, cell_size):
-        values[0, record.source.valid] = stored
+    valid = _valid_cells(record, mesh, cell_size)
+    if valid is not None:
+        values[0, valid] = stored
     else:
         from scipy.spatial import cKDTree
 
@@ -188,11 +190,11 @@ def write_bands(path: str | os.PathLike[str], bands: Bands, wkt: str | None) -> 
             dataset.set_band_description(k, name)
 
 
-def _is_cell_for_cell(record: PyramidRecord, mesh: TriangleMesh, cell_size: float | None) -> bool:
-    """Whether every vertex of the mesh is a valid cell of the input's own grid."""
+def _valid_cells(
+    record: PyramidRecord, mesh: TriangleMesh, cell_size: float | None
+) -> NDArray[np.bool_] | None:
+    """Return the cells of the input's own grid, if they are the vertices of the mesh one by one."""
     source = record.source
-    return (
-        isinstance(source, RasterSource)
-        and cell_size is None
-        and mesh.n_vertices == source.n_vertices
-    )
+    if not isinstance(source, RasterSource) or cell_size is not None:
+        return None
+    return source.valid if mesh.n_vertices == source.n_vertices else None

@@ -14,10 +14,10 @@ from wavelet_gis.record import PyramidRecord
 __all__ = ["plot_details"]
 
 #: Markers beyond this number are not told apart; the largest are drawn.
-MAX_MARKERS = 30_000
+MAX_MARKERS = 8_000
 
 #: Area in square points of the largest marker.
-LARGEST_MARKER = 60.0
+LARGEST_MARKER = 50.0
 
 
 def plot_details(path: str | os.PathLike[str], record: PyramidRecord) -> None:
@@ -100,7 +100,10 @@ def _aspect(record: PyramidRecord) -> float:
 def _colour(position: float) -> tuple[float, float, float, float]:
     import matplotlib
 
-    return matplotlib.colormaps["plasma_r"](0.08 + 0.9 * position)  # type: ignore[no-any-return]
+    colour: tuple[float, float, float, float] = matplotlib.colormaps["plasma_r"](
+        0.08 + 0.9 * position
+    )
+    return colour
 
 
 def _matplotlib_figure() -> Any:
