@@ -236,27 +236,20 @@ def _charts(figures: dict[str, Any], unit: str) -> str:
 
 
 def _level_table(figures: dict[str, Any], unit: str) -> str:
+    # What matters most comes first: a phone shows the left half of the table.
     header = (
-        "level",
-        "vertices",
-        "share",
-        "triangles",
-        "spacing",
-        "RMSE",
-        "90 %",
-        "largest",
-        "open",
-    )
+        "level", "vertices", "RMSE", "90\u202f%", "largest", "share", "triangles", "spacing", "open"
+    )  # fmt: skip
     rows = [
         (
             str(row["level"]),
             _count(row["n_vertices"]),
-            f"{_share(row['vertex_share'])}",
-            _count(row["n_faces"]),
-            _number(row["spacing"]),
             _number(row["rmse_surface"]),
             _number(row["error_90"]),
             _number(row["max_error_surface"]),
+            _share(row["vertex_share"]),
+            _count(row["n_faces"]),
+            _number(row["spacing"]),
             _count(row["n_uncovered"]),
         )
         for row in figures["levels"]
@@ -292,7 +285,7 @@ def _where(figures: dict[str, Any], unit: str) -> str:
             f"on average they lie {_number(abs(shown['bias'] or 0.0))} {unit} "
             f"{'above' if (shown['bias'] or 0.0) >= 0 else 'below'} it.</p>"
             '<div class="grid"><div>'
-            + _table(("slope of the input", "vertices", "RMSE", "of squared error"), slopes)
+            + _table(("slope", "vertices", "RMSE", "of squared error"), slopes)
             + "</div><div>"
             + _table(("x", "y", "z", "largest errors"), worst)
             + "</div></div>"
@@ -400,5 +393,6 @@ table{border-collapse:collapse;font-size:.88rem;font-variant-numeric:tabular-num
 th,td{padding:4px 9px;text-align:right;white-space:nowrap;border-bottom:1px solid var(--rule)}
 th:first-child,td:first-child{text-align:left}th{color:var(--soft);font-weight:600}
 .made table{min-width:0}.made td{text-align:left}.made th{text-align:left}
+@media (max-width:480px){table{font-size:.8rem}th,td{padding:4px 6px}}
 @media print{body{font-size:11px}}
 """.replace("\n", "")
