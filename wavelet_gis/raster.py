@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["read_dem", "write_cog", "write_dem"]
 
 #: Creation options of GeoTIFF that are taken over from the file that was read.
-_GTIFF_OPTIONS = ("compress", "predictor", "tiled", "blockxsize", "blockysize", "bigtiff")
+_GTIFF_OPTIONS = ("compress", "predictor", "tiled", "blockxsize", "blockysize")
 
 #: Lossless compressions; a lossy one would break what it is told to keep.
 _LOSSLESS = {"lzw", "deflate", "packbits", "zstd", "lzma"}
@@ -29,7 +31,7 @@ _DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid", ".img": "HFA",
 
 
 def read_dem(path: str | os.PathLike[str], *, band: int | None = None) -> tuple[Dem, Georeference]:
-    """One band of a raster, and what the file tells of its coordinates.
+    """Return one band of a raster, and what the file tells of its coordinates.
 
     Parameters
     ----------
@@ -82,48 +84,43 @@ def write_dem(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
         When GDAL cannot write this format or type of data.
     """
     import rasterio
-    from rasterio._err import CPLE_BaseError
-    from rasterio.crs import CRS
-    from rasterio.errors import NotGeoreferencedWarning, RasterioError
 
     driver = _driver_of(path)
-    n_rows, n_columns = dem.geometry.shape
-    profile: dict[str, Any] = {
-        "driver": "GTiff" if driver == "COG" else driver,
-        "width": n_columns,
-        "height": n_rows,
-        "count": 1,
-        "dtype": dem.values.dtype.newbyteorder("=").name,
-        "nodata": dem.nodata,
-        "transform": rasterio.Affine(*dem.geometry.transform),
-        "crs": CRS.from_wkt(wkt) if wkt else None,
-    }
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", NotGeoreferencedWarning)
-            if profile["driver"] == "GTiff":
-                profile.update(_gtiff_options(dem))
-                with rasterio.open(path, "w", **profile) as dataset:
-                    _fill(dataset, dem)
-            else:
-                _write_copy(path, profile, dem)
-    # GDAL's own errors reach us bare where rasterio only hands a call through.
-    except (RasterioError, CPLE_BaseError, ValueError) as error:
-        raise OutputFileError(
-            f"{path}: GDAL cannot write this as {driver} ({error}); use a name ending in .tif."
-        ) from error
+    with _complaints_about(path, f"as {driver}", "use a name ending in .tif"):
+        profile = _profile_to_write(dem, wkt, driver)
+        if driver == "GTiff":
+            with rasterio.open(path, "w", **profile, **_gtiff_options(dem)) as dataset:
+                _fill(dataset, dem)
+        else:
+            _write_copy(path, profile, dem)
 
 
 def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
-    """Write a DEM as a cloud-optimised GeoTIFF (tiled, deflate, with overviews)."""
+    """Write a DEM as a cloud-optimised GeoTIFF: tiled, deflate, with overviews.
+
+    Parameters are those of `write_dem`.
+
+    Raises
+    ------
+    OutputFileError
+        When GDAL cannot write it.
+    """
     import rasterio
-    from rasterio._err import CPLE_BaseError
+
+    with _complaints_about(path, "as a cloud-optimised GeoTIFF", "leave --cog out"):
+        profile = _profile_to_write(dem, wkt, "COG")
+        options = {"compress": "deflate", "predictor": "yes"}
+        with rasterio.open(path, "w", **profile, **options) as dataset:
+            _fill(dataset, dem)
+
+
+def _profile_to_write(dem: Dem, wkt: str | None, driver: str) -> dict[str, Any]:
+    import rasterio
     from rasterio.crs import CRS
-    from rasterio.errors import RasterioError
 
     n_rows, n_columns = dem.geometry.shape
-    profile: dict[str, Any] = {
-        "driver": "COG",
+    return {
+        "driver": driver,
         "width": n_columns,
         "height": n_rows,
         "count": 1,
@@ -131,15 +128,24 @@ def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
         "nodata": dem.nodata,
         "transform": rasterio.Affine(*dem.geometry.transform),
         "crs": CRS.from_wkt(wkt) if wkt else None,
-        "compress": "deflate",
-        "predictor": "yes",
     }
+
+
+@contextmanager
+def _complaints_about(path: str | os.PathLike[str], what: str, remedy: str) -> Iterator[None]:
+    """Turn what GDAL and rasterio raise in the block into one error of ours."""
+    from rasterio._err import CPLE_BaseError
+    from rasterio.errors import NotGeoreferencedWarning, RasterioError
+
     try:
-        with rasterio.open(path, "w", **profile) as dataset:
-            _fill(dataset, dem)
+        with warnings.catch_warnings():
+            # A raster without georeference was told of when it was read.
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            yield
+    # GDAL's own errors reach us bare where rasterio only hands a call through.
     except (RasterioError, CPLE_BaseError, ValueError) as error:
         raise OutputFileError(
-            f"{path}: GDAL cannot write this as a cloud-optimised GeoTIFF ({error})."
+            f"{path}: GDAL cannot write this {what} ({error}); {remedy}."
         ) from error
 
 
@@ -213,9 +219,6 @@ def _profile(dataset: DatasetReader, index: int) -> dict[str, Any]:
     options = {key: value for key, value in dataset.profile.items() if key in _GTIFF_OPTIONS}
     if "PREDICTOR" in structure:
         options["predictor"] = int(structure["PREDICTOR"])
-    if str(options.get("compress", "lzw")).lower() not in _LOSSLESS:
-        options.pop("compress", None)
-        options.pop("predictor", None)
     profile: dict[str, Any] = {
         "driver": dataset.driver,
         "options": options,
@@ -231,10 +234,22 @@ def _profile(dataset: DatasetReader, index: int) -> dict[str, Any]:
 
 
 def _gtiff_options(dem: Dem) -> dict[str, Any]:
-    options = dict(dem.profile.get("options", {}))
-    options = {key: options[key] for key in _GTIFF_OPTIONS if key in options}
-    if not options.get("tiled"):
-        options.pop("blockxsize", None)
+    """Return the creation options that the profile hints at and that GeoTIFF takes.
+
+    The hints may come from another format, or from a file of unknown origin.
+    """
+    hints = dem.profile.get("options")
+    hints = hints if isinstance(hints, dict) else {}
+    options: dict[str, Any] = {}
+    if str(hints.get("compress")).lower() in _LOSSLESS:
+        options["compress"] = str(hints["compress"])
+        if hints.get("predictor") in ([1, 2, 3] if dem.values.dtype.kind == "f" else [1, 2]):
+            options["predictor"] = hints["predictor"]
+    if hints.get("tiled") is True:
+        options["tiled"] = True
+        sizes = [hints.get("blockxsize"), hints.get("blockysize")]
+        if all(type(size) is int and 16 <= size <= 8192 and size % 16 == 0 for size in sizes):
+            options["blockxsize"], options["blockysize"] = sizes
     if dem.values.nbytes > 3 << 30:
         options["bigtiff"] = "IF_SAFER"
     return options
@@ -244,22 +259,21 @@ def _fill(dataset: DatasetWriter, dem: Dem) -> None:
     dataset.write(dem.values, 1)
     if dem.scale != 1.0 or dem.offset != 0.0:
         dataset.scales, dataset.offsets = (dem.scale,), (dem.offset,)
-    tags = dem.profile.get("tags", {})
-    if tags:
-        dataset.update_tags(**{str(key): str(value) for key, value in tags.items()})
-    band_tags = {
-        str(key): str(value)
-        for key, value in dem.profile.get("band_tags", {}).items()
-        if not str(key).startswith("STATISTICS_")
-    }
-    if band_tags:
-        dataset.update_tags(1, **band_tags)
+    dataset.update_tags(**_texts(dem.profile.get("tags")))
+    dataset.update_tags(1, **_texts(dem.profile.get("band_tags")))
     if dem.profile.get("description"):
         dataset.set_band_description(1, str(dem.profile["description"]))
     if dem.profile.get("unit"):
         dataset.units = (str(dem.profile["unit"]),)
     if dem.profile.get("has_mask"):
         dataset.write_mask(dem.valid)
+
+
+def _texts(tags: object) -> dict[str, str]:
+    """Return tags as GDAL takes them, without statistics, which may hold no longer."""
+    if not isinstance(tags, dict):
+        return {}
+    return {str(key): str(value) for key, value in tags.items() if "STATISTICS_" not in str(key)}
 
 
 def _write_copy(path: str | os.PathLike[str], profile: dict[str, Any], dem: Dem) -> None:

@@ -194,6 +194,30 @@ def test_formats_that_cannot_be_written(tmp_path, tif):
         write_dem(tmp_path / "a.png", dem, place.wkt)  # PNG holds no float32
 
 
+@pytest.mark.parametrize(
+    "profile",
+    [
+        {"options": 7, "tags": "x", "band_tags": [1]},
+        {"options": {"compress": "jpeg", "predictor": 9, "tiled": "yes"}},
+        {"options": {"compress": ["lzw"], "tiled": True, "blockxsize": 17, "blockysize": 10**9}},
+        {"options": {"compress": "deflate", "predictor": [2]}, "description": 5, "unit": 3.5},
+        {"options": {"driver": "PNG", "count": 4}, "tags": {"A": 1}},
+    ],
+)
+def test_hints_of_a_stranger_do_no_harm(tmp_path, tif, profile):
+    from dataclasses import replace
+
+    dem, place = read_dem(tif)
+    write_dem(tmp_path / "a.tif", replace(dem, profile=profile), place.wkt)
+    assert_same_raster(tif, tmp_path / "a.tif")
+
+
+def test_a_crs_that_is_none_is_told_of(tmp_path, tif):
+    dem, _ = read_dem(tif)
+    with pytest.raises(OutputFileError, match="GDAL cannot write"):
+        write_dem(tmp_path / "a.tif", dem, "nonsense")
+
+
 def test_a_format_that_changes_the_values_is_refused(tmp_path):
     source = write_tif(tmp_path / "a.tif", (hills(40, 40) / 2).astype("u1"))
     dem, place = read_dem(source)
