@@ -216,7 +216,7 @@ def test_the_examples_of_the_docs_run(page, folder, tmp_path, monkeypatch, capsy
 @pytest.mark.data
 @pytest.mark.parametrize(
     ("source", "levels"),
-    [("dems/jacksboro_tn_4326.tif", "8"), ("clouds/mountain_utm42_38k.las", "8")],
+    [("dems/rmnp_u16_4326.tif", "8"), ("clouds/mountain_utm42_38k.las", "8")],
 )
 def test_real_data_go_through_all_three(source, levels, data_folder, tmp_path, capsys):
     pyramid = tmp_path / "p.gpkg"
