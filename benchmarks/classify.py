@@ -53,7 +53,9 @@ def read(folder: Path, pattern: str):
         points = np.column_stack([las.x, las.y, las.z])
         classes = np.array(las.classification, dtype=np.int64)
         parts.append((points, classes, attributes.astype(float), np.full(len(points), number)))
-    points, classes, attributes, tile = (np.concatenate(column) for column in zip(*parts, strict=True))
+    points, classes, attributes, tile = (
+        np.concatenate(column) for column in zip(*parts, strict=True)
+    )
     kept = merge_duplicates(points).kept
     return points[kept], classes[kept], attributes[kept], tile[kept]
 
@@ -168,6 +170,49 @@ def run_cloud(folder: Path, name: str, n_rows: int):
     return result
 
 
+def as_markdown(results) -> str:
+    """Return the tables of the results."""
+    lines = []
+    for name, result in results.items():
+        lines += [
+            f"**{name}**, {result['n_points']:,} vertices, {result['n_judged']:,} judged, "
+            f"{result['n_folds']} folds:",
+            "",
+            "| learned from | columns | accuracy | F1 ground | F1 vegetation | F1 building |",
+            "| --- | --- | --- | --- | --- | --- |",
+        ]
+        for set_name, figures in result["sets"].items():
+            f1 = " | ".join(f"{figures['f1'][c]:.3f}" for c in ("2", "5", "6"))
+            lines.append(
+                f"| {set_name} | {figures['n_features']} | {figures['accuracy']:.3f} | {f1} |"
+            )
+        last = list(result["sets"].values())[-1]
+        lines += [
+            "",
+            "| true (with all spectra) | as ground | as vegetation | as building |",
+            "| --- | --- | --- | --- |",
+        ]
+        for row_name, row in zip(
+            ("ground", "vegetation", "building"), last["confusion"], strict=True
+        ):
+            lines.append(f"| {row_name} | " + " | ".join(f"{n:,}" for n in row) + " |")
+        lines += [
+            "",
+            "| ground against the rest | accuracy | F1 | kappa |",
+            "| --- | --- | --- | --- |",
+        ]
+        for set_name, figures in result["sets"].items():
+            lines.append(f"| {set_name} | {_three(figures['ground'])} |")
+        cloth = result["ground_filter"]
+        setting = f"{cloth['resolution']:g}, rigidness {cloth['rigidness']}"
+        lines += [f"| cloth simulation filter (resolution {setting}) | {_three(cloth)} |", ""]
+    return "\n".join(lines)
+
+
+def _three(figures) -> str:
+    return " | ".join(f"{figures[key]:.3f}" for key in ("accuracy", "f1", "kappa"))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     here = Path(__file__).resolve().parent.parent
@@ -178,6 +223,7 @@ def main() -> None:
     results = {name: run_cloud(arguments.data / "clouds", name, arguments.rows) for name in CLOUDS}
     if arguments.output:
         arguments.output.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    print(as_markdown(results))
 
 
 if __name__ == "__main__":
