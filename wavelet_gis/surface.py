@@ -10,7 +10,7 @@ from wavelet_gis.dem import Dem, GridGeometry, RasterSource
 from wavelet_gis.rasterise import geometry_over, rasterise
 from wavelet_gis.record import PyramidRecord
 
-__all__ = ["surface_dem"]
+__all__ = ["surface_dem", "surface_difference"]
 
 
 def surface_dem(
@@ -63,6 +63,20 @@ def surface_dem(
     grid[~covered] = tag
     profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
     return Dem(grid, covered, geometry, tag, profile=profile)
+
+
+def surface_difference(before: PyramidRecord, after: PyramidRecord) -> Dem:
+    """Return the finest surface of one record minus that of another, on the grid of their raster.
+
+    Parameters
+    ----------
+    before, after : PyramidRecord
+        Of the same raster: a pyramid, and the same one filtered.
+    """
+    old, new = (surface_dem(record, record.pyramid.synthesise()) for record in (before, after))
+    valid = old.valid & new.valid
+    values = np.where(valid, new.values - old.values, np.float32("nan")).astype(np.float32)
+    return Dem(values, valid, old.geometry, float("nan"), profile=old.profile)
 
 
 def _geometry(mesh: TriangleMesh, cell_size: float | None) -> GridGeometry:

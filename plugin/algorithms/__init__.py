@@ -9,6 +9,7 @@ from .analyse_tin import AnalyseTin
 from .cluster_details import ClusterDetails
 from .detail_layers import DetailLayers
 from .extract_level import ExtractLevel
+from .filter_levels import FilterLevels
 from .quality_report import QualityReport
 from .reconstruct import Reconstruct
 
@@ -19,6 +20,7 @@ ALGORITHMS = (
     AnalyseTin,
     ExtractLevel,
     Reconstruct,
+    FilterLevels,
     DetailLayers,
     ClusterDetails,
     QualityReport,

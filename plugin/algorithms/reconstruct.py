@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-from qgis.core import (
-    QgsProcessing,
-    QgsProcessingException,
-    QgsProcessingOutputNumber,
-    QgsProcessingOutputString,
-    QgsProcessingParameterFeatureSink,
-    QgsProcessingParameterFileDestination,
-    QgsProcessingParameterRasterDestination,
-)
+from qgis.core import QgsProcessingOutputNumber, QgsProcessingOutputString
 
 from .. import dependencies
+from ..restored_output import add_restored_outputs, nothing_written, write_restored
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -45,31 +38,11 @@ class Reconstruct(PyramidAlgorithm):
     def initAlgorithm(self, configuration=None):
         """Declare parameters and outputs."""
         self.add_pyramid_parameter()
-        self.add(
-            QgsProcessingParameterRasterDestination(
-                "DEM", self.tr("Reconstructed DEM"), optional=True, createByDefault=True
-            ),
-            self.tr("For a pyramid of a DEM."),
-        )
-        self.add(
-            QgsProcessingParameterFileDestination(
-                "POINT_CLOUD",
-                self.tr("Reconstructed point cloud"),
-                self.tr("LAZ (*.laz);;LAS (*.las)"),
-                optional=True,
-                createByDefault=False,
-            ),
-            self.tr("For a pyramid of a point cloud file. Needs the Python package laspy."),
-        )
-        self.add(
-            QgsProcessingParameterFeatureSink(
-                "TIN",
-                self.tr("Reconstructed TIN"),
-                QgsProcessing.SourceType.TypeVectorPolygon,
-                optional=True,
-                createByDefault=False,
-            ),
-            self.tr("The triangles of the finest level, for a pyramid of any kind."),
+        add_restored_outputs(
+            self,
+            self.tr("Reconstructed DEM"),
+            self.tr("Reconstructed point cloud"),
+            self.tr("Reconstructed TIN"),
         )
         self.addOutput(QgsProcessingOutputNumber("N_VERTICES", self.tr("Number of vertices")))
         self.addOutput(
@@ -84,61 +57,18 @@ class Reconstruct(PyramidAlgorithm):
 
     def work(self, parameters, context, feedback):
         """Synthesise, restore, write what was asked for."""
-        from .. import tin_output
         from ..bridge import require_running
-        from ..pyramids import crs_of
 
         record = self.record(parameters, context, feedback)
-        crs = crs_of(record)
         feedback.setProgress(30)
         feedback.setProgressText(self.tr("Synthesising the finest level"))
         finest = record.pyramid.synthesise()
         require_running(feedback)
         feedback.setProgress(60)
-        results = {"N_VERTICES": finest.n_vertices, "EXACT": _exactness(record)}
-        if record.source.kind == "raster":
-            self._write_dem(parameters, context, record, finest, crs, feedback, results)
-        elif record.source.kind == "points":
-            self._write_cloud(parameters, context, record, finest, feedback, results)
-        if parameters.get("TIN"):
-            results["TIN"] = tin_output.write_tin(
-                self, parameters, "TIN", context, record, record.pyramid.n_levels, feedback
-            )
-        if len(results) == 2:
-            raise QgsProcessingException(self._nothing_to_write(record.source.kind))
-        return results
-
-    def _write_dem(self, parameters, context, record, finest, crs, feedback, results):
-        from .. import raster_output, styles
-
-        path = self.parameterAsOutputLayer(parameters, "DEM", context)
-        if not path:
-            return
-        dem = record.source.restore(finest, record.frame)
-        raster_output.write_dem(path, dem, crs, feedback)
-        styles.style_output(context, path, styles.style_hillshade)
-        results["DEM"] = path
-
-    def _write_cloud(self, parameters, context, record, finest, feedback, results):
-        from wavelet_gis.atomic import new_file
-        from wavelet_gis.pointcloud import write_cloud
-
-        path = self.parameterAsFileOutput(parameters, "POINT_CLOUD", context)
-        if not path:
-            return
-        with new_file(path, overwrite=True) as scratch:
-            write_cloud(scratch, record.source.restore(finest, record.frame))
-        results["POINT_CLOUD"] = path
-
-    def _nothing_to_write(self, kind):
-        if kind == "raster":
-            return self.tr("This pyramid was made from a DEM; choose where the DEM goes.")
-        if kind == "points":
-            return self.tr(
-                "This pyramid was made from a point cloud; choose a file for the point cloud, or "
-                "take the TIN."
-            )
-        return self.tr("This pyramid was made from a TIN; choose where the TIN goes.")
+        results = write_restored(self, parameters, context, record, finest, feedback)
+        if not results:
+            raise nothing_written(record.source.kind)
+        return {"N_VERTICES": finest.n_vertices, "EXACT": _exactness(record), **results}
 
 
 def _exactness(record) -> str:

@@ -714,6 +714,196 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>A difference of DEMs needs a pyramid that was made from a DEM.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>A pyramid file like the input, with the changed details.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Changes chosen scales of the terrain: damps or boosts the details of each level by a gain, keeps a band of levels or of sizes on the ground, or takes out noise while banks and ridges stay. It gives the filtered pyramid and the filtered DEM, point cloud or TIN. Noise is taken out first, then gains apply.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Choose levels or sizes to keep, not both.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Coarsest level kept</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Difference of the DEMs</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Drop details that are larger on the ground, in metres.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Drop details that are smaller on the ground, in metres.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Drop the details of coarser levels.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Drop the details of finer levels.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Filter levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Filtered DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Filtered TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Filtered minus original elevation, for a pyramid of a DEM.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Filtered point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Filtered pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Finest level kept</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Gain</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Gains</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Gains are pairs of a level and a number, such as 5 and 0.5.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>In the unit of elevation; empty to have it estimated from the finest level.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Largest change of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Largest size kept</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Leave out the coarsest surface</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Nothing would change: take out noise, list gains, or choose levels or sizes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Number of pyramids averaged</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Pyramids in random order, each denoised, whose average leaves no traces of triangles. 0 thresholds the details of this pyramid alone, which is quick.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Root mean square change of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Smallest size kept</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>So that the kept details remain by themselves, around zero.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Standard deviation of the noise</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Standard deviation of the noise, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Take out noise</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Taking out the noise</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>What the details of a level are multiplied by: 0 drops them, 0.5 halves, 2 doubles. Levels that are not listed stay. Level 0 is the coarsest.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Which to take noise from, separated by commas: z and attributes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>White noise, such as that of a laser scanner.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>denoise,smooth,sharpen,band,equaliser,filter,gain,wavelet,pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>All numbers of the report, for other programs.</source>
     <translation type="unfinished"></translation>
@@ -780,21 +970,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>For a pyramid of a DEM.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>For a pyramid of a point cloud file. Needs the Python package laspy.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>LAZ (*.laz);;LAS (*.las)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
     <source>Reconstruct</source>
     <translation type="unfinished"></translation>
   </message>
@@ -821,26 +996,6 @@
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
     <source>Synthesising the finest level</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>The triangles of the finest level, for a pyramid of any kind.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>This pyramid was made from a DEM; choose where the DEM goes.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>This pyramid was made from a TIN; choose where the TIN goes.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1101,6 +1256,41 @@
   <message>
     <location filename="../../plugin/rasters.py"/>
     <source>{}: the raster cannot be read ({}); the file is damaged, get it again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/restored_output.py"/>
+    <source>For a pyramid of a DEM.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/restored_output.py"/>
+    <source>For a pyramid of a point cloud file. Needs the Python package laspy.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/restored_output.py"/>
+    <source>LAZ (*.laz);;LAS (*.las)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/restored_output.py"/>
+    <source>The triangles of the finest level, for a pyramid of any kind.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/restored_output.py"/>
+    <source>This pyramid was made from a DEM; choose where the DEM goes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/restored_output.py"/>
+    <source>This pyramid was made from a TIN; choose where the TIN goes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/restored_output.py"/>
+    <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

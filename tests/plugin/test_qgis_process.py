@@ -122,8 +122,11 @@ def test_a_text_file_as_las_is_refused_in_one_sentence(qgis_process, tmp_path):
 def command_line():
     """Return the path of the installed command, which lives in an environment of its own."""
     path = ROOT / ".venv" / "bin" / "terrain-wavelets"
-    works = path.exists() and subprocess.run([path, "--help"], capture_output=True, check=False)
-    if not works or works.returncode != 0:
+    try:
+        works = subprocess.run([path, "--help"], capture_output=True, check=False).returncode == 0
+    except OSError:  # not there, or made for another machine
+        works = False
+    if not works:
         pytest.skip("the command terrain-wavelets is not installed in .venv here")
     return path
 
