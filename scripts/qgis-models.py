@@ -17,8 +17,10 @@ from qgis.core import (
     QgsProcessingModelOutput,
     QgsProcessingModelParameter,
     QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
     QgsProcessingParameterNumber,
     QgsProcessingParameterRasterLayer,
+    QgsProcessingParameterString,
 )
 from qgis.PyQt.QtCore import QPointF
 
@@ -208,6 +210,101 @@ def dem_and_breaklines_to_mesh():
     model.write("dem_and_breaklines_to_hydraulic_mesh.model3")
 
 
+def point_cloud_to_filtered_dem():
+    """Point cloud to filtered DEM."""
+    model = Model(
+        "Point cloud to filtered DEM",
+        "Takes the ground points of a LAS or LAZ file, takes out the noise of the scanner while "
+        "banks and ridges stay, and gives a DEM of any cell size.",
+    )
+    model.input(
+        QgsProcessingParameterFile(
+            "points", "Point cloud file", fileFilter="LAS and LAZ (*.las *.laz *.LAS *.LAZ)"
+        ),
+        "With classified ground, or see below.",
+    )
+    model.input(
+        QgsProcessingParameterString("classes", "Classes", "2", optional=True),
+        "ASPRS classes of the points that make the ground; empty for all points.",
+    )
+    model.input(
+        optional_number("noise", "Standard deviation of the noise", DOUBLE),
+        "In the unit of elevation; empty to have it estimated.",
+    )
+    model.input(
+        optional_number("cell_size", "Cell size", DOUBLE),
+        "Of the DEM, in the unit of the CRS; empty for the mean spacing of the points.",
+    )
+    model.step(
+        "analyse",
+        "terrainwavelets:analysepointcloud",
+        "Analyse the points",
+        INPUT=input_("points"),
+        CLASSES=input_("classes"),
+        LEVELS=8,
+    )
+    model.step(
+        "filter",
+        "terrainwavelets:filterlevels",
+        "Take out the noise",
+        INPUT=result("analyse", "OUTPUT"),
+        DENOISE=True,
+        SIGMA_OF_NOISE=input_("noise"),
+        outputs={"OUTPUT": ("Filtered pyramid!", "GeoPackage from which every level is rebuilt.")},
+    )
+    model.step(
+        "raster",
+        "terrainwavelets:extractlevel",
+        "Make the DEM",
+        INPUT=result("filter", "OUTPUT"),
+        LEVEL=result("analyse", "N_LEVELS"),
+        CELL_SIZE=input_("cell_size"),
+        outputs={"RASTER": ("Filtered DEM!", "Elevations without the noise.")},
+    )
+    model.write("point_cloud_to_filtered_dem.model3")
+
+
+def dem_to_denoised_dem_and_report():
+    """DEM to denoised DEM, difference and report."""
+    model = Model(
+        "DEM to denoised DEM and report",
+        "Takes out the noise of a DEM while banks and ridges stay, and shows what was taken: the "
+        "difference as a raster, and a report on the quality of every level.",
+    )
+    model.input(QgsProcessingParameterRasterLayer("dem", "DEM"), "Raster of elevations.")
+    model.input(
+        optional_number("noise", "Standard deviation of the noise", DOUBLE),
+        "In the unit of elevation; empty to have it estimated.",
+    )
+    model.step(
+        "analyse",
+        "terrainwavelets:analysedem",
+        "Analyse the DEM",
+        INPUT=input_("dem"),
+        LEVELS=8,
+    )
+    model.step(
+        "filter",
+        "terrainwavelets:filterlevels",
+        "Take out the noise",
+        INPUT=result("analyse", "OUTPUT"),
+        DENOISE=True,
+        SIGMA_OF_NOISE=input_("noise"),
+        outputs={
+            "DEM": ("Denoised DEM!", "Elevations without the noise."),
+            "DIFFERENCE": ("Difference", "Denoised minus original elevation."),
+        },
+    )
+    model.step(
+        "report",
+        "terrainwavelets:qualityreport",
+        "Report",
+        INPUT=result("filter", "OUTPUT"),
+        outputs={"OUTPUT": ("Quality report", "HTML page on the denoised pyramid.")},
+    )
+    model.write("dem_to_denoised_dem_and_report.model3")
+
+
 def main():
     """Write all models."""
     application = QgsApplication([], False)
@@ -227,6 +324,8 @@ def main():
         QgsApplication.processingRegistry().addProvider(provider)
         dem_to_coarse_tin_and_details()
         dem_and_breaklines_to_mesh()
+        point_cloud_to_filtered_dem()
+        dem_to_denoised_dem_and_report()
 
 
 if __name__ == "__main__":

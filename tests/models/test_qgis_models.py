@@ -4,13 +4,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from qgis_layers import Log, hills, wkt_layer, write_raster
+from qgis_layers import Log, hills, read_raster, survey, wkt_layer, write_raster
 
 FOLDER = Path(__file__).resolve().parent.parent.parent / "processing_models"
 
 MODELS = {
     "DEM to coarse TIN and details": "dem_to_coarse_tin_and_details.model3",
     "DEM and breaklines to hydraulic mesh": "dem_and_breaklines_to_hydraulic_mesh.model3",
+    "Point cloud to filtered DEM": "point_cloud_to_filtered_dem.model3",
+    "DEM to denoised DEM and report": "dem_to_denoised_dem_and_report.model3",
 }
 
 
@@ -101,3 +103,54 @@ def test_dem_and_breaklines_to_hydraulic_mesh(run_model, dem, tmp_path):
     mesh = layers["mesh"]
     assert mesh.dataProvider().vertexCount() == 500
     assert mesh.crs().authid() == "EPSG:2154"
+
+
+def test_dem_to_denoised_dem_and_report(run_model, tmp_path):
+    rough = hills(60, 60).astype("float32")
+    dem = write_raster(tmp_path / "dem.tif", rough, -9999.0)
+    results, layers = run_model(
+        "DEM to denoised DEM and report",
+        {
+            "dem": dem,
+            "noise": 0.5,
+            "denoised_dem": str(tmp_path / "denoised.tif"),
+            "difference": str(tmp_path / "difference.tif"),
+            "quality_report": str(tmp_path / "report.html"),
+        },
+    )
+    denoised = np.frombuffer(read_raster(results["denoised_dem"])["bytes"], "f4").reshape(60, 60)
+    difference = np.frombuffer(read_raster(results["difference"])["bytes"], "f4").reshape(60, 60)
+    assert np.allclose(denoised - rough, difference, atol=1e-4)
+    noise = np.random.default_rng(7).normal(size=(60, 60)) * 0.5
+    clean = rough - noise
+    assert np.std(denoised - clean) < 0.5 * np.std(noise)
+    assert layers["Denoised DEM"].renderer().type() == "hillshade"
+    assert "</html>" in Path(results["quality_report"]).read_text(encoding="utf-8")
+
+
+def test_point_cloud_to_filtered_dem(run_model, tmp_path):
+    laspy = pytest.importorskip("laspy")
+    xyz = survey(1500)
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.offsets, header.scales = xyz.min(axis=0), [0.01, 0.01, 0.001]
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = xyz.T
+    cloud.classification = np.where(np.arange(1500) % 10 == 0, 5, 2)
+    cloud.write(str(tmp_path / "points.las"))
+    results, _ = run_model(
+        "Point cloud to filtered DEM",
+        {
+            "points": str(tmp_path / "points.las"),
+            "classes": "2",
+            "noise": 0.05,
+            "cell_size": 20.0,
+            "filtered_pyramid": str(tmp_path / "pyramid.gpkg"),
+            "filtered_dem": str(tmp_path / "dem.tif"),
+        },
+    )
+    raster = read_raster(results["filtered_dem"])
+    assert raster["shape"] == (50, 50)
+    values = np.frombuffer(raster["bytes"], "f4")
+    inside = values[np.isfinite(values)]
+    assert len(inside) > 2000
+    assert xyz[:, 2].min() - 1 < inside.min() < inside.max() < xyz[:, 2].max() + 1
