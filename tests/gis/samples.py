@@ -97,9 +97,17 @@ def assert_same_cloud(path, other):
 
 
 def records_of(las):
-    """Return the VLRs that must survive: all but those of the compression."""
-    return [
+    """Return the VLRs that must survive byte for byte.
+
+    Not those of the compression; and of the record of extra dimensions, whose smallest and largest
+    values laspy reckons anew, the names, types, scales and descriptions.
+    """
+    extra = [
+        (d.name, d.dtype, d.description, None if d.scales is None else list(d.scales))
+        for d in las.point_format.extra_dimensions
+    ]
+    return extra, [
         (record.user_id, record.record_id, bytes(record.record_data_bytes()))
         for record in las.vlrs
-        if record.user_id != "copc"
+        if record.user_id != "copc" and (record.user_id, record.record_id) != ("LASF_Spec", 4)
     ]
