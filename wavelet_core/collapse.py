@@ -11,8 +11,9 @@ Which kind of vertex may collapse onto which neighbour::
     isolated     no                    no
     locked       no                    no
 
-and only if no new face is flipped or flat, no neighbour loses its last face, and the link
-condition holds, also against edges that earlier collapses of the same pass made (Fig. 3).
+and only if no new face is flipped or flat, no neighbour loses its last face or, within the
+surface, is left with two of them back to back, and the link condition holds, also against edges
+that earlier collapses of the same pass made (Fig. 3).
 """
 
 from __future__ import annotations

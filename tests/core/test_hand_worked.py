@@ -267,3 +267,19 @@ def test_link_the_waist_of_a_triangular_tube_is_not_pinched(side):
     waist = 3 + side
     mesh = tube(n_sides=3, n_rings=3, radius=0.2)
     assert collapses(mesh, [waist], "xyz")[waist] not in {3, 4, 5}
+
+
+def test_link_a_tetrahedron_is_not_flattened():
+    """The one face left over the hole would lie back to back on the face that is there."""
+    vertices = [(0.1, 0.1, 1), (0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    mesh = TriangleMesh(vertices, [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 3, 2)])
+    assert collapses(mesh, [0], "xyz") == {}
+
+
+def test_link_two_apexes_of_a_bipyramid_do_not_both_go():
+    """The first collapse leaves a tetrahedron, which the second one would flatten."""
+    vertices = [(0.1, 0.1, 1), (0.1, 0.1, -1), (0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    upper = [(0, 2, 3), (0, 3, 4), (0, 4, 2)]
+    lower = [(1, 3, 2), (1, 4, 3), (1, 2, 4)]
+    mesh = TriangleMesh(vertices, upper + lower)
+    assert collapses(mesh, [0, 1], "xyz").keys() == {0}

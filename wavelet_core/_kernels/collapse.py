@@ -85,6 +85,12 @@ def is_removable(v, in_plan, points, locked, kind, ring, base, size):
     return not in_plan or is_collinear(points, ring[base], v, ring[base + size - 1])
 
 
+# Would a vertex be left without faces, or, within the surface, with two faces back to back?
+@njit
+def is_worn_out(v, n_faces_left, kind):
+    return n_faces_left < (3 if kind[v] == INTERIOR else 1)
+
+
 # Is the collapse of v onto its ring entry `position` legal? n_faces_of (n,) int32 is current.
 @njit
 def is_legal(
@@ -97,11 +103,18 @@ def is_legal(
     target = ring[base + position]
     after = (position + 1) % size
     before = (position - 1) % size
-    if not (is_outline and position == size - 1) and n_faces_of[ring[base + after]] < 2:
-        return False  # the last face of a neighbour would go
-    if not (is_outline and position == 0) and n_faces_of[ring[base + before]] < 2:
+    if not (is_outline and position == size - 1) and is_worn_out(
+        ring[base + after], n_faces_of[ring[base + after]] - 1, kind
+    ):
+        return False
+    if not (is_outline and position == 0) and is_worn_out(
+        ring[base + before], n_faces_of[ring[base + before]] - 1, kind
+    ):
         return False
     n_sides = size - 1 if is_outline else size
+    n_shared = 1 if is_outline else 2
+    if is_worn_out(target, n_faces_of[target] + n_sides - 2 * n_shared, kind):
+        return False
     for k in range(n_sides):
         b, c = ring[base + k], ring[base + (k + 1) % size]
         if b == target or c == target:
