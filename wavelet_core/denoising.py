@@ -45,7 +45,7 @@ def denoise(
     mesh: TriangleMesh,
     sigma: float | None = None,
     *,
-    n_pyramids: int = 24,
+    n_pyramids: int = 32,
     levels: int = 14,
     prediction: str = "plane",
     channels: Sequence[str] = ("z",),

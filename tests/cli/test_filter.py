@@ -1,5 +1,9 @@
 """The command filter: gains, bands, noise; as a raster, a cloud, a mesh or a pyramid."""
 
+import re
+import shlex
+from pathlib import Path
+
 import laspy
 import numpy as np
 import pytest
@@ -133,3 +137,23 @@ def test_an_output_of_another_kind_is_refused(refused, pyramid, cloud_pyramid, t
 @pytest.mark.parametrize("option", ["--gain=5", "--band=2", "--band-metres=a:b", "--denoise=x"])
 def test_nonsense_is_a_usage_error(command, pyramid, tmp_path, option):
     assert command("filter", pyramid, tmp_path / "out.tif", option).code == 2
+
+
+@pytest.mark.large
+def test_the_examples_of_the_docs_run(done, noisy, tmp_path, monkeypatch, capsys):
+    page = Path(__file__).resolve().parent.parent.parent / "docs" / "filtering.md"
+    blocks = re.findall(r"^```(python|sh)\n(.*?)^```", page.read_text("utf-8"), re.M | re.S)
+    assert [language for language, _ in blocks] == ["sh", "python", "python"]
+    (tmp_path / "dem.tif").write_bytes(Path(noisy[0]).read_bytes())
+    monkeypatch.chdir(tmp_path)
+    scope = {}
+    for language, text in blocks:
+        if language == "python":
+            exec(compile(text, page.name, "exec"), scope)
+            continue
+        for line in text.strip().splitlines():
+            program, *arguments = shlex.split(line)
+            assert program == "terrain-wavelets"
+            done(*arguments)
+    assert "furrows" in (out := capsys.readouterr().out)
+    assert "noise" in out
