@@ -87,6 +87,8 @@ def assert_manifold(mesh, n_parent_fans=None):
     assert not len(doubled), (
         f"edge {doubled[:1].tolist()} has more than two faces, or one is turned"
     )
+    corners = np.sort(mesh.faces, axis=1)
+    assert len(np.unique(corners, axis=0)) == len(corners), "two faces lie back to back"
     fans = n_fans(mesh.faces, mesh.n_vertices)
     allowed = np.ones(mesh.n_vertices, dtype=int) if n_parent_fans is None else n_parent_fans
     worse = np.flatnonzero(fans > np.maximum(allowed, 1))

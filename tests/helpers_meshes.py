@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from hypothesis import strategies as st
-from scipy.spatial import Delaunay
+from scipy.spatial import ConvexHull, Delaunay
 
 from wavelet_core import TriangleMesh
 
@@ -129,6 +129,17 @@ def tube(n_sides: int, n_rings: int, radius: float = 1.0) -> TriangleMesh:
             b = ring * n_sides + (side + 1) % n_sides
             faces += [[a, b, b + n_sides], [a, b + n_sides, a + n_sides]]
     return TriangleMesh(vertices, faces)
+
+
+def ball(n: int, seed: int = 0) -> TriangleMesh:
+    """Return a closed surface: the hull of random points on a sphere, faces outwards."""
+    points = np.random.default_rng(seed).standard_normal((n, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    faces = ConvexHull(points).simplices
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+    faces[inwards] = faces[inwards][:, ::-1]
+    return TriangleMesh._trusted(points, faces, np.empty((n, 0)), ())
 
 
 @st.composite

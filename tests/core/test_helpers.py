@@ -122,6 +122,12 @@ def test_an_edge_of_three_faces_is_seen():
         helpers.assert_manifold(book)
 
 
+def test_faces_back_to_back_are_seen():
+    weld = TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 1]])
+    with pytest.raises(AssertionError, match="back to back"):
+        helpers.assert_manifold(weld)
+
+
 def test_flat_and_flipped_faces_are_seen():
     flat = TriangleMesh([[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2]])
     with pytest.raises(AssertionError, match="no area"):

@@ -3,7 +3,7 @@
 import helpers
 import numpy as np
 import pytest
-from helpers_meshes import grid_with_holes, meshes, random_delaunay
+from helpers_meshes import ball, grid_with_holes, meshes, random_delaunay
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -89,6 +89,15 @@ def test_24_levels_of_a_larger_mesh(prediction, update, signal, n_attributes):
 def test_a_larger_grid(signal, hole_share):
     mesh = grid_with_holes(60, 45, n_attributes=1, seed=2, hole_share=hole_share, scale=1e3)
     pyramid = analyse(mesh, levels=24, partition="quadric", prediction="GLMN", signal=signal)
+    helpers.assert_pyramid_is_consistent(pyramid, mesh)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("prediction", ["uniform", "geometric", "nnls", "cotangent"])
+def test_a_closed_surface(prediction, seed):
+    mesh = ball(60, seed)
+    pyramid = analyse(mesh, levels=30, partition="quadric", prediction=prediction, signal="xyz")
+    assert pyramid.n_vertices(0) >= 4
     helpers.assert_pyramid_is_consistent(pyramid, mesh)
 
 
