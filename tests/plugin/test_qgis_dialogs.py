@@ -18,9 +18,12 @@ ALGORITHMS = (
     "reconstruct",
     "detaillayers",
     "clusterdetails",
+    "filterlevels",
     "qualityreport",
     "DEM to coarse TIN and details",
     "DEM and breaklines to hydraulic mesh",
+    "Point cloud to filtered DEM",
+    "DEM to denoised DEM and report",
 )
 KEPT = os.environ.get("TERRAIN_WAVELETS_PICTURES")
 

@@ -1,0 +1,212 @@
+"""What a pyramid is used for: filters, energy, clusters, classes, the report; in a real QGIS."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from qgis_layers import Log, hills, read_raster, wkt_layer, write_raster
+
+
+@pytest.fixture(scope="module")
+def pyramid(qgis, tmp_path_factory):
+    """Return a pyramid of a DEM that is smooth in the west and rough in the east."""
+    import processing
+
+    folder = tmp_path_factory.mktemp("uses")
+    rough = np.random.default_rng(1).normal(size=(80, 100)) * 3.0
+    rough[:, :50] = 0
+    path = write_raster(folder / "dem.tif", (hills(80, 100) + rough).astype("float32"))
+    return processing.run(
+        "terrainwavelets:analysedem",
+        {"INPUT": path, "OUTPUT": str(folder / "p.gpkg"), "LEVELS": 6},
+    )["OUTPUT"]
+
+
+def numbers(path, dtype="f4"):
+    raster = read_raster(path)
+    return np.frombuffer(raster["bytes"], dtype).reshape(raster["shape"])
+
+
+class TestFilter:
+    def test_unit_gains_change_nothing(self, run, pyramid, tmp_path):
+        made = run(
+            "filterlevels",
+            {"INPUT": pyramid, "GAINS": [5, 1.0], "DEM": str(tmp_path / "f.tif")},
+        )
+        assert made["MAX_CHANGE"] == pytest.approx(0.0, abs=1e-9)
+
+    def test_without_the_finest_details_the_rough_half_is_smoother(self, run, pyramid, tmp_path):
+        original = run("reconstruct", {"INPUT": pyramid, "DEM": str(tmp_path / "o.tif")})
+        made = run(
+            "filterlevels",
+            {
+                "INPUT": pyramid,
+                "LAST_LEVEL": 3,
+                "DEM": str(tmp_path / "f.tif"),
+                "DIFFERENCE": str(tmp_path / "d.tif"),
+                "OUTPUT": str(tmp_path / "f.gpkg"),
+            },
+        )
+        before, after = numbers(original["DEM"]), numbers(made["DEM"])
+        difference = numbers(made["DIFFERENCE"])
+        assert np.allclose(after - before, difference, atol=1e-4)
+        assert np.std(difference[:, 55:]) > 2 * np.std(difference[:, :45])
+        assert made["RMS_CHANGE"] == pytest.approx(np.sqrt(np.mean(difference**2)), rel=1e-3)
+        # The pyramid that was written holds the same terrain, and says that it was changed.
+        again = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "a.tif")})
+        assert again["EXACT"] == "no"
+        assert np.array_equal(numbers(again["DEM"]), after)
+
+    def test_nothing_to_change_is_refused_before_it_starts(self, provider, pyramid):
+        from qgis.core import QgsProcessingContext
+
+        algorithm = provider.algorithm("filterlevels").create()
+        context = QgsProcessingContext()
+        parameters = {"INPUT": pyramid, "DEM": "TEMPORARY_OUTPUT"}
+        is_fine, message = algorithm.checkParameterValues(parameters, context)
+        assert not is_fine
+        assert "Nothing would change" in message
+        parameters["GAINS"] = ["five", "x"]
+        is_fine, message = algorithm.checkParameterValues(parameters, context)
+        assert not is_fine
+        assert "pairs" in message
+
+    def test_cancel_while_denoising_leaves_nothing_behind(self, run, pyramid, tmp_path):
+        log = Log(cancel_at=20)
+        made = run(
+            "filterlevels",
+            {"INPUT": pyramid, "DENOISE": True, "DEM": str(tmp_path / "f.tif")},
+            feedback=log,
+        )
+        assert not made.get("DEM")
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_energy_maps_where_the_terrain_is_rough(run, pyramid, tmp_path):
+    from osgeo import gdal
+
+    made = run(
+        "detaillayers",
+        {"INPUT": pyramid, "OUTPUT": "TEMPORARY_OUTPUT", "ENERGY": str(tmp_path / "e.tif")},
+    )
+    dataset = gdal.Open(made["ENERGY"])
+    assert dataset.RasterCount == 6
+    finest = dataset.GetRasterBand(6)
+    assert "level 5" in finest.GetDescription()
+    energy = np.frombuffer(finest.ReadRaster(), "f4").reshape(80, 100)
+    assert np.nanmean(energy[:, 55:]) > 3 * np.nanmean(energy[:, :45])
+
+
+class TestClusters:
+    @pytest.fixture(autouse=True)
+    def sklearn(self):
+        pytest.importorskip("sklearn")
+
+    def test_two_clusters_are_the_two_halves(self, run, pyramid, tmp_path):
+        made = run(
+            "clusterdetails",
+            {
+                "INPUT": pyramid,
+                "COUNT": 2,
+                "RASTER": str(tmp_path / "c.tif"),
+                "OUTPUT": "TEMPORARY_OUTPUT",
+                "SUMMARY": str(tmp_path / "c.json"),
+            },
+        )
+        assert made["N_CLUSTERS"] == 2
+        labels = numbers(made["RASTER"], "u1")
+        assert (labels[:, :45] == 0).mean() > 0.9
+        assert (labels[:, 55:] == 1).mean() > 0.9
+        assert made["OUTPUT"].featureCount() == 8000
+        summary = json.loads(Path(made["SUMMARY"]).read_text())
+        assert [row["label"] for row in summary["clusters"]] == [0, 1]
+
+    def test_classes_are_learned_from_training_areas(self, run, pyramid, tmp_path):
+        import processing
+
+        boxes = [(700050, 700200), (700800, 700950)]
+        wkts = [f"Polygon (({a} 6599300, {b} 6599300, {b} 6599900, {a} 6599900, {a} 6599300))"
+                for a, b in boxes]  # fmt: skip
+        areas = wkt_layer("Polygon", wkts)
+        areas = processing.run(
+            "native:fieldcalculator",
+            {
+                "INPUT": areas,
+                "FIELD_NAME": "kind",
+                "FIELD_TYPE": 1,
+                "FORMULA": "if(x_min($geometry) < 700500, 3, 7)",
+                "OUTPUT": "TEMPORARY_OUTPUT",
+            },
+        )["OUTPUT"]
+        made = run(
+            "clusterdetails",
+            {
+                "INPUT": pyramid,
+                "LEARN_FROM": "training areas",
+                "TRAINING": areas,
+                "CLASS_FIELD": "kind",
+                "RASTER": str(tmp_path / "c.tif"),
+            },
+        )
+        labels = numbers(made["RASTER"], "u1")
+        assert set(np.unique(labels)) == {3, 7}
+        assert (labels[:, :45] == 3).mean() > 0.9
+        assert (labels[:, 55:] == 7).mean() > 0.9
+
+    def test_training_without_a_layer_is_refused(self, provider, pyramid):
+        from qgis.core import QgsProcessingContext
+
+        algorithm = provider.algorithm("clusterdetails").create()
+        parameters = {"INPUT": pyramid, "LEARN_FROM": "training areas", "RASTER": "x.tif"}
+        is_fine, message = algorithm.checkParameterValues(parameters, QgsProcessingContext())
+        assert not is_fine
+        assert "training" in message
+
+
+def test_report_needs_no_network(run, pyramid, tmp_path):
+    made = run(
+        "qualityreport",
+        {
+            "INPUT": pyramid,
+            "OUTPUT": str(tmp_path / "r.html"),
+            "FIGURES": str(tmp_path / "r.json"),
+        },
+    )
+    page = Path(made["OUTPUT"]).read_text(encoding="utf-8")
+    assert "<img" in page or "<svg" in page
+    assert 'src="http' not in page
+    figures = json.loads(Path(made["FIGURES"]).read_text())
+    assert figures["levels"][-1]["n_vertices"] == made["COARSE_VERTICES"]
+
+
+def test_two_in_batch(provider, pyramid, tmp_path):
+    """Run one algorithm twice over, as the batch panel does: a new instance for each row."""
+    from qgis.core import QgsProcessingContext
+
+    algorithm = provider.algorithm("extractlevel")
+    for level in (0, 3):
+        context = QgsProcessingContext()
+        parameters = {
+            "INPUT": pyramid,
+            "LEVEL": level,
+            "TIN": str(tmp_path / f"level_{level}.gpkg"),
+        }
+        results, is_ok = algorithm.create().run(parameters, context, Log())
+        assert is_ok
+        assert Path(results["TIN"].split("|")[0]).stat().st_size > 0
+    sizes = [(tmp_path / f"level_{level}.gpkg").stat().st_size for level in (0, 3)]
+    assert sizes[1] > sizes[0]
+
+
+def test_the_choices_are_the_cores(qgis):
+    from terrain_wavelets.plugin import design
+
+    from wavelet_core.options import PARTITIONS, SIGNALS
+    from wavelet_core.prediction import PREDICTIONS
+    from wavelet_core.update import UPDATES
+
+    assert set(design.PARTITIONS) == set(PARTITIONS)
+    assert set(design.PREDICTIONS) == set(PREDICTIONS.values())
+    assert set(design.UPDATES) == set(UPDATES.values())
+    assert set(design.SIGNALS) == set(SIGNALS)
