@@ -1,4 +1,8 @@
-"""TINs as mesh files: PLY, OBJ and 2DM, written by numpy alone so that QGIS needs nothing more."""
+"""TINs as mesh files.
+
+PLY, OBJ, 2DM, STL and LandXML need numpy alone, so that QGIS needs nothing more; GLB and DXF are
+written by libraries, see `wavelet_gis.exchange`.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +17,7 @@ from numpy.typing import NDArray
 import wavelet_core
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import OutputFileError
+from wavelet_gis.exchange import write_dxf, write_glb, write_landxml, write_stl
 
 __all__ = ["MESH_SUFFIXES", "write_2dm", "write_mesh", "write_obj", "write_ply"]
 
@@ -26,16 +31,18 @@ def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None
     Parameters
     ----------
     path : path
-        Ending in ``.ply``, ``.obj`` or ``.2dm``.
+        Ending in one of `MESH_SUFFIXES`.
     mesh : TriangleMesh
         In the coordinates to be written.
     wkt : str, optional
-        The CRS, for a ``.prj`` beside a 2DM file; the other formats know none.
+        The CRS, for a ``.prj`` beside a 2DM file and for LandXML; the other formats know none.
 
     Raises
     ------
     OutputFileError
         When the suffix is none of these.
+    MissingDependencyError
+        When the library that writes GLB or DXF is absent.
     """
     suffix = Path(path).suffix.lower()
     writer = _WRITERS.get(suffix)
@@ -43,6 +50,9 @@ def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None
         raise OutputFileError(
             f"{path}: meshes are written as {', '.join(MESH_SUFFIXES)}; use one of these suffixes."
         )
+    if suffix == ".xml":
+        write_landxml(path, mesh, wkt)
+        return
     writer(path, mesh)
     if wkt and suffix == ".2dm":
         Path(path).with_suffix(".prj").write_text(wkt, encoding="utf-8")
@@ -98,6 +108,10 @@ _WRITERS: dict[str, Callable[[str | os.PathLike[str], TriangleMesh], None]] = {
     ".ply": write_ply,
     ".obj": write_obj,
     ".2dm": write_2dm,
+    ".stl": write_stl,
+    ".glb": write_glb,
+    ".xml": write_landxml,
+    ".dxf": write_dxf,
 }
 
 #: Suffixes of the formats that `write_mesh` writes.

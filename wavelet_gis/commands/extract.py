@@ -1,4 +1,4 @@
-"""``extract FILE OUT --level K``: one level as a TIN, a mesh file or a raster."""
+"""``extract FILE OUT``: one level, or any size between two, as a TIN, a mesh file or a raster."""
 
 from __future__ import annotations
 
@@ -12,9 +12,14 @@ from wavelet_gis.console import Console
 
 if TYPE_CHECKING:
     from wavelet_core import TriangleMesh
+    from wavelet_core._validate import IntArray
+    from wavelet_core.partial import PartialMesh
     from wavelet_gis.record import PyramidRecord
 
-HELP = "Write one level of a pyramid as a TIN (GPKG, PLY, 2DM, OBJ) or a raster (GeoTIFF, COG)."
+HELP = (
+    "Write one level of a pyramid, or the mesh of a size or an accuracy, as a TIN (GPKG, PLY, 2DM, "
+    "OBJ, STL, GLB, LandXML, DXF) or a raster (GeoTIFF, COG)."
+)
 
 RASTER_SUFFIXES = (".tif", ".tiff")
 
@@ -22,9 +27,21 @@ RASTER_SUFFIXES = (".tif", ".tiff")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("file", help="a pyramid file")
-    parser.add_argument("output", help="ending in .gpkg, .ply, .2dm, .obj, .tif or .tiff")
     parser.add_argument(
+        "output", help="ending in .gpkg, .ply, .2dm, .obj, .stl, .glb, .xml, .dxf, .tif or .tiff"
+    )
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument(
         "--level", type=int, default=0, metavar="K", help="0, the default, is the coarsest"
+    )
+    which.add_argument(
+        "--vertices", type=int, metavar="N", help="just so many: a level, or part of the step below"
+    )
+    which.add_argument(
+        "--max-error",
+        type=length,
+        metavar="M",
+        help="the least with no input vertex further off, vertically; in the unit of z",
     )
     raster = parser.add_argument_group("raster")
     raster.add_argument(
@@ -58,25 +75,37 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             "--cell-size, --attribute and --cog are for rasters; give an output ending in .tif."
         )
     record = read_pyramid(arguments.file)
-    mesh = record.pyramid.mesh(arguments.level)
+    mesh, vertex_ids, level = _wanted(record, arguments)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if is_raster:
             figures = write_raster(scratch, record, mesh, arguments)
         else:
-            write_tin(scratch, record, mesh, arguments.level)
+            write_tin(scratch, record, mesh, level, vertex_ids)
             figures = {}
     sizes = {
-        "level": arguments.level,
+        "level": level,
         "n_vertices": mesh.n_vertices,
         "n_triangles": mesh.n_faces,
         **figures,
     }
     shape = f", {figures['n_rows']} x {figures['n_columns']} cells" if figures else ""
     console.say(
-        f"level {arguments.level}: {mesh.n_vertices:,} vertices, {mesh.n_faces:,} triangles"
+        f"level {level}: {mesh.n_vertices:,} vertices, {mesh.n_faces:,} triangles"
         f"{shape}; {arguments.output}"
     )
     console.figures({"output": str(arguments.output), **sizes})
+
+
+def _wanted(record: PyramidRecord, arguments: argparse.Namespace) -> PartialMesh:
+    from wavelet_core.partial import PartialMesh, mesh_of_accuracy, mesh_of_size
+
+    pyramid = record.pyramid
+    if arguments.vertices is not None:
+        return mesh_of_size(pyramid, arguments.vertices)
+    if arguments.max_error is not None:
+        return mesh_of_accuracy(pyramid, arguments.max_error * record.frame.z_scale)
+    mesh = pyramid.mesh(arguments.level)
+    return PartialMesh(mesh, pyramid.vertex_ids(arguments.level), arguments.level)
 
 
 def length(text: str) -> float:
@@ -88,15 +117,22 @@ def length(text: str) -> float:
 
 
 def write_tin(
-    path: str | os.PathLike[str], record: PyramidRecord, mesh: TriangleMesh, level: int
+    path: str | os.PathLike[str],
+    record: PyramidRecord,
+    mesh: TriangleMesh,
+    level: int,
+    vertex_ids: IntArray | None = None,
 ) -> None:
-    """Write a mesh of the pyramid as GeoPackage layers or as a mesh file, by the suffix."""
+    """Write a mesh of the pyramid as GeoPackage layers or as a mesh file, by the suffix.
+
+    ``vertex_ids`` are needed where the mesh is between two levels.
+    """
     from wavelet_gis.layers import tin_layers
     from wavelet_gis.meshfiles import write_mesh
     from wavelet_gis.vector import add_layers
 
     if Path(path).suffix.lower() == ".gpkg":
-        ids = record.pyramid.vertex_ids(level)
+        ids = record.pyramid.vertex_ids(level) if vertex_ids is None else vertex_ids
         add_layers(path, tin_layers(record, mesh, ids, f"level_{level:02d}"), record.system)
     else:
         write_mesh(path, record.file_mesh(mesh), record.system.wkt)
