@@ -64,7 +64,7 @@ def energy_columns(
 def component_columns(
     record: PyramidRecord, channel: str | None = None, progress: Progress | None = None
 ) -> FloatArray:
-    """What each level adds to the input at every vertex, ``(n_vertices, L)``, signed.
+    """Return what each level adds to the input at every vertex, ``(n_vertices, L)``, signed.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def vertex_layer(
 
 
 def shape_layer(record: PyramidRecord, level: int) -> Layer:
-    """The vertices of a level with slope, aspect and curvatures of its surface.
+    """Return the vertices of a level with slope, aspect and curvatures of its surface.
 
     Parameters
     ----------
