@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._kernels._jit import announce_fallback
+from ._surface_level import SurfaceLevel
 from ._validate import FloatArray, frozen
 from .collapse import even_positions, merge_map, merged_faces
 from .connectivity import build_connectivity
@@ -22,22 +23,26 @@ from .partition import (
     Partition,
     QuadricPartition,
     RandomPartition,
+    SurfacePartition,
 )
 from .prediction import Removal, predict
 from .pyramid import Pyramid
+from .surface import SurfaceRules, analyse_surface
 
 Progress = Callable[[float], bool | None]
 
 #: Share of the vertices that one level is expected to keep, for the progress bar alone.
 EXPECTED_KEPT = 0.73
+#: Attributes of weight 0 still count this little, so that they can be lifted beside z.
+LEAST_WEIGHT = 1e-9
 
 
 def analyse(
     mesh: TriangleMesh,
     levels: int | None = None,
-    partition: str = "quadric",
-    prediction: str = "geometric",
-    update: str = "minimum_norm",
+    partition: str = "surface",
+    prediction: str | None = None,
+    update: str | None = None,
     signal: str = "z",
     locked: ArrayLike | None = None,
     target_vertices: int | None = None,
@@ -48,6 +53,8 @@ def analyse(
     attribute_weights: Sequence[float] | None = None,
     bending_weight: float = 1.0,
     seed: int = 0,
+    norm: str | None = None,
+    removal_fraction: float | None = None,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
 
@@ -57,15 +64,17 @@ def analyse(
         A manifold surface, with or without outline and holes.
     levels : int, optional
         The most levels to build. By default 12, or, with another stop rule, as many as it takes.
-    partition : {"quadric", "colouring", "random"}
-        Which vertices go: by the paper's cost, or regardless of it in the order of their index
-        or in a random one.
-    prediction : str
+    partition : {"surface", "quadric", "colouring", "random"}
+        Which vertices go: those that raise the vertical errors at all input vertices least; by
+        the paper's cost; or regardless of any, in the order of their index or a random one.
+    prediction : str, optional
         How an odd vertex is estimated from its neighbours: ``"uniform"``, ``"cotangent"``,
-        ``"geometric"``, ``"nnls"``, ``"least_squares"``, ``"barycentric"`` or ``"plane"``. The
-        paper's short names (``"GL"``) and joined designs (``"GLMN"``) are accepted.
-    update : {"minimum_norm", "martinez_ortega", "one_ring_mean", "none"}
-        How the details are handed on to the even vertices.
+        ``"geometric"``, ``"nnls"``, ``"least_squares"``, ``"barycentric"`` or ``"plane"``; by
+        default ``"barycentric"`` with ``partition="surface"``, else ``"geometric"``. The paper's
+        short names (``"GL"``) and joined designs (``"GLMN"``) are accepted.
+    update : {"minimum_norm", "martinez_ortega", "one_ring_mean", "none"}, optional
+        How the details are handed on to the even vertices. By default ``"minimum_norm"``; with
+        ``partition="surface"`` and ``norm="max"`` it is ``"none"``.
     signal : {"z", "xyz"}
         Lift elevation and attributes and keep x and y (every level is a valid TIN), or lift all
         coordinates, as the paper does (a coarse level may then have faces flipped in plan).
@@ -74,8 +83,9 @@ def analyse(
     target_vertices : int, optional
         Stop at this number of vertices; the last level removes only what is still due.
     max_error, max_rms : float, optional
-        Stop before a level whose largest or root mean square vertical distance from the input
-        vertices is above this, in the unit of z.
+        Largest or root mean square vertical distance from all input vertices, in the unit of z,
+        that the coarsest level may have; with ``partition="surface"`` it is used up as far as
+        whole removals allow, with the others the analysis stops before the level that breaks it.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
     attribute_weights : sequence of float, optional
@@ -84,6 +94,12 @@ def analyse(
         Weight of the bending energy in the cost of ``partition="quadric"``.
     seed : int
         Of the order of ``partition="random"``.
+    norm : {"rms", "max"}, optional
+        What ``partition="surface"`` keeps small: the mean square of the vertical errors, or the
+        largest. By default ``"max"`` if ``max_error`` is given, else ``"rms"``.
+    removal_fraction : float, optional
+        Largest share of the vertices that a level of ``partition="surface"`` may take; 0.25 by
+        default.
 
     Returns
     -------
@@ -125,6 +141,8 @@ def analyse(
         attribute_weights=attribute_weights,
         bending_weight=bending_weight,
         seed=seed,
+        norm=norm,
+        removal_fraction=removal_fraction,
     )
     announce_fallback(mesh.n_vertices)
     return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
@@ -154,17 +172,14 @@ class _Analysis:
         self._locked = locked
         self._integrals = np.ones(mesh.n_vertices)
         self._scale = _Normalisation(mesh, options)
-        self._partition = _partition(options)
 
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
-        steps: list[Step] = []
         self._report(0.0)
-        while len(steps) < self._options.levels:
-            step = self._step()
-            if step is None:
-                break
-            steps.append(step)
+        if self._options.partition == "surface":
+            build_connectivity(self._faces, self._mesh.n_vertices)  # refuses what is no manifold
+            self._report(0.0)
+        steps = self._surface_steps() if self._is_surface_lifting() else self._steps()
         self._report(1.0)
         return Pyramid(
             faces=frozen(self._mesh.faces.astype(np.int32)),
@@ -177,6 +192,66 @@ class _Analysis:
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
         )
+
+    def _steps(self) -> list[Step]:
+        """Partition, predict and update, each by its own rule."""
+        self._partition = self._make_partition()
+        steps: list[Step] = []
+        while len(steps) < self._options.levels:
+            step = self._step()
+            if step is None:
+                break
+            steps.append(step)
+        return steps
+
+    def _is_surface_lifting(self) -> bool:
+        """Whether partition, prediction and update are those that know of each other."""
+        options = self._options
+        return (
+            options.partition == "surface"
+            and options.prediction == "barycentric"
+            and options.update in ("minimum_norm", "none")
+            and self._in_plan
+        )
+
+    def _surface_steps(self) -> list[Step]:
+        """Keep the surface: partition, prediction and update in one, see `surface`."""
+        options = self._options
+        rules = SurfaceRules(
+            levels=options.levels,
+            norm=options.norm,
+            with_update=options.update == "minimum_norm",
+            removal_fraction=options.removal_fraction,
+            target_vertices=options.target_vertices or 0,
+            max_error=np.inf if options.max_error is None else options.max_error,
+            max_rms=np.inf if options.max_rms is None else options.max_rms,
+        )
+        result = analyse_surface(
+            self._mesh.vertices[:, :2],
+            self._coefficients,
+            self._faces,
+            self._locked,
+            self._scale.height_weights(),
+            rules,
+            self._report_size,
+        )
+        self._coefficients = result.coarse
+        return result.steps
+
+    def _make_partition(self) -> Partition:
+        options = self._options
+        if options.partition == "quadric":
+            return QuadricPartition(options.bending_weight)
+        if options.partition == "random":
+            return RandomPartition(options.seed)
+        if options.partition == "colouring":
+            return ColouringPartition()
+        _require_upright(self._mesh)
+        columns = np.hstack([self._mesh.vertices[:, 2:], self._mesh.attributes])
+        heights = columns * self._scale.height_weights()
+        plan = self._mesh.vertices[:, :2]
+        level = SurfaceLevel(plan, heights, self._faces, self._locked, with_update=False)
+        return SurfacePartition(level, options.norm, options.removal_fraction)
 
     def _step(self) -> Step | None:
         """Analyse one level; None, and the level unchanged, where a rule forbids it."""
@@ -241,7 +316,10 @@ class _Analysis:
             return True
         return max_rms is not None and bool(np.sqrt(np.mean(errors**2)) > max_rms)
 
-    def _report(self, fraction: float | None = None) -> None:
+    def _report_size(self, n_vertices: int) -> None:
+        self._report(n_vertices=n_vertices)
+
+    def _report(self, fraction: float | None = None, n_vertices: int | None = None) -> None:
         if self._progress is None:
             return
         n_input = self._mesh.n_vertices
@@ -249,19 +327,10 @@ class _Analysis:
             expected = self._options.target_vertices or n_input * EXPECTED_KEPT ** min(
                 self._options.levels, 40
             )
-            gone = n_input - len(self._coefficients)
+            gone = n_input - (len(self._coefficients) if n_vertices is None else n_vertices)
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
         if self._progress(fraction) is False:
             raise Cancelled("the analysis was cancelled; nothing was kept.")
-
-
-def _partition(options: AnalysisOptions) -> Partition:
-    """Return the partition that the options name."""
-    if options.partition == "quadric":
-        return QuadricPartition(options.bending_weight)
-    if options.partition == "random":
-        return RandomPartition(options.seed)
-    return ColouringPartition()
 
 
 class _Normalisation:
@@ -274,6 +343,13 @@ class _Normalisation:
         self._centre = low + extent / 2
         weights = np.array((1.0, 1.0, 1.0, *options.attribute_weights))
         self._factor = weights / np.where(extent > 0, extent, 1.0)
+        height = extent[2] if extent[2] > 0 else 1.0
+        self._height_weights = np.maximum(self._factor[2:], LEAST_WEIGHT) * height
+        self._height_weights[0] = 1.0
+
+    def height_weights(self) -> FloatArray:
+        """Return what errors of z and of each attribute count for against errors of z."""
+        return self._height_weights
 
     def points(
         self, coefficients: FloatArray, horizontal: FloatArray | None

@@ -12,7 +12,11 @@ from .errors import OptionError
 from .prediction import PREDICTIONS
 from .update import UPDATES
 
-PARTITIONS = ("quadric", "colouring", "random")
+PARTITIONS = ("surface", "quadric", "colouring", "random")
+#: By what a surface-guided partition judges a removal.
+NORMS = ("rms", "max")
+#: Share of the vertices that a surface-guided level may take, at most.
+REMOVAL_FRACTION = 0.25
 SIGNALS = ("z", "xyz")
 #: Levels when neither a number nor a stop rule is given: the paper's experiments use 12.
 DEFAULT_LEVELS = 12
@@ -35,6 +39,8 @@ class AnalysisOptions:
     attribute_weights: tuple[float, ...]
     bending_weight: float
     seed: int
+    norm: str
+    removal_fraction: float
 
     def as_dict(self) -> dict[str, Any]:
         """Return the options as plain numbers, strings and lists."""
@@ -66,8 +72,8 @@ def resolve_options(
     n_attributes: int,
     levels: int | None,
     partition: str,
-    prediction: str,
-    update: str,
+    prediction: str | None,
+    update: str | None,
     signal: str,
     target_vertices: int | None,
     max_error: float | None,
@@ -75,6 +81,8 @@ def resolve_options(
     attribute_weights: Sequence[float] | None,
     bending_weight: float,
     seed: int,
+    norm: str | None,
+    removal_fraction: float | None,
 ) -> AnalysisOptions:
     """Return the options with defaults filled in and short names spelled out.
 
@@ -102,6 +110,17 @@ def resolve_options(
         raise OptionError(f"bending_weight is {bending_weight}; give 0 or more.")
     if not 0 <= seed < 2**63:
         raise OptionError(f"seed is {seed}; give a whole number of 0 or more.")
+    if norm is None:
+        norm = "rms" if max_error is None else "max"
+    if removal_fraction is None:
+        removal_fraction = REMOVAL_FRACTION
+    if not 0 < removal_fraction <= 1:
+        raise OptionError(f"removal_fraction is {removal_fraction}; give more than 0, at most 1.")
+    is_surface = partition == "surface"
+    if prediction is None:
+        prediction = "barycentric" if is_surface else "geometric"
+    if update is None:
+        update = "none" if is_surface and norm == "max" else "minimum_norm"
     prediction, update = parse_design(prediction, update)
     return AnalysisOptions(
         levels=int(levels),
@@ -115,6 +134,8 @@ def resolve_options(
         attribute_weights=tuple(float(w) for w in weights),
         bending_weight=float(bending_weight),
         seed=int(seed),
+        norm=_one_of(norm, NORMS, "norm"),
+        removal_fraction=float(removal_fraction),
     )
 
 

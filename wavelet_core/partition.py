@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ._kernels.partition import label
+from ._surface_level import SurfaceLevel
 from ._validate import FloatArray
 from .connectivity import Connectivity
 from .geometry import bending_energy
@@ -135,6 +136,41 @@ class RandomPartition:
 
     def descend(self, split: Split, even: NDArray[np.int32], prediction: csr_array) -> None:
         """Carry nothing."""
+
+
+class SurfacePartition:
+    """The surface-guided partition for any filters: what raises the vertical errors least goes.
+
+    It measures the errors of the input's own heights, as if nothing were updated, so that every
+    pairing of filters can follow. :func:`wavelet_core.surface.analyse_surface` also ranks by what
+    the update does, for the barycentric prediction.
+
+    Parameters
+    ----------
+    level : SurfaceLevel
+        The input, without update.
+    norm : {"rms", "max"}
+    removal_fraction : float
+    """
+
+    def __init__(self, level: SurfaceLevel, norm: str, removal_fraction: float) -> None:
+        self._level = level
+        self._norm = norm
+        self._removal_fraction = removal_fraction
+
+    def split(self, view: LevelView, max_odd: int) -> Split:
+        """Label the vertices of a level, the cheapest first."""
+        level = self._level
+        level.rank(self._norm, np.inf, np.inf)
+        slots = level.candidates(self._removal_fraction, np.inf)
+        odd = level.independent(slots, max_odd, np.inf)
+        if len(odd) == 0:
+            return Split(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
+        step = level.remove(odd)
+        return Split(step.odd, step.target)
+
+    def descend(self, split: Split, even: NDArray[np.int32], prediction: csr_array) -> None:
+        """Carry nothing: the level has been collapsed in place."""
 
 
 def _label(

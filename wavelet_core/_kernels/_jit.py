@@ -9,11 +9,14 @@ of threads.
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import itertools
 import os
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 
 from ..errors import OptionError, SlowFallbackWarning
@@ -43,9 +46,22 @@ def njit(function: Callable[..., Any]) -> Any:
     if _numba is None:
         return function
     try:
-        return _numba.njit(cache=True, nogil=True)(function)
+        compiled = _numba.njit(cache=True, nogil=True)(function)
     except RuntimeError:  # no writable place for the cache
         return _numba.njit(nogil=True)(function)
+    # Numba takes cached code for good while the file of the function itself is unchanged, though
+    # kernels of other files are compiled into it: a change in any of them must void it.
+    with contextlib.suppress(AttributeError):
+        index = compiled._cache._cache_file
+        index._source_stamp = (index._source_stamp, _stamp_of_all_kernels())
+    return compiled
+
+
+@functools.cache
+def _stamp_of_all_kernels() -> tuple[tuple[str, int, int], ...]:
+    """Name, time of change and size of every file of kernels."""
+    files = sorted(Path(__file__).parent.glob("*.py"))
+    return tuple((file.name, file.stat().st_mtime_ns, file.stat().st_size) for file in files)
 
 
 def announce_fallback(n_vertices: int) -> None:

@@ -1,0 +1,176 @@
+"""Kernels on a half-edge mesh that is collapsed in place.
+
+Half-edge ``h = 3 * face + corner`` runs from the face's corner to the next one; it goes with its
+face. A vertex of the outline names, as its outgoing half-edge, the one without a twin, so that a
+walk from it counter-clockwise meets its whole fan.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._jit import njit
+
+NO_INDEX = -1
+# longest one-ring that is looked at; a vertex with more neighbours stays
+MAX_RING = 64
+
+
+class HalfEdges(NamedTuple):
+    """Topology of a triangle mesh.
+
+    origin : (3 n_faces,) int32, vertex that each half-edge leaves
+    twin : (3 n_faces,) int32, NO_INDEX on the outline
+    outgoing : (n_vertices,) int32, a half-edge that leaves the vertex; NO_INDEX without faces
+    """
+
+    origin: NDArray[np.int32]
+    twin: NDArray[np.int32]
+    outgoing: NDArray[np.int32]
+
+
+# indptr (n + 1,) int64 and star (3 m,) int32 from connectivity.fill_stars; mesh.twin, filled
+@njit
+def find_twins(start, stop, indptr, star, mesh):
+    origin = mesh.origin
+    for face in range(start, stop):
+        first = 3 * face
+        for corner in range(3):
+            tail = origin[first + corner]
+            head = origin[first + (corner + 1) % 3]
+            twin = -1
+            for k in range(indptr[head], indptr[head + 1]):
+                other = 3 * star[k]
+                for c in range(3):
+                    if origin[other + c] == head and origin[other + (c + 1) % 3] == tail:
+                        twin = other + c
+            mesh.twin[first + corner] = twin
+
+
+# mesh.outgoing, filled; n_fans (n,) int8, filled with 0, 1 or 2 (two and more)
+@njit
+def find_outgoing(start, stop, indptr, star, mesh, n_fans):
+    origin, twin = mesh.origin, mesh.twin
+    for vertex in range(start, stop):
+        mesh.outgoing[vertex] = -1
+        n_open = 0
+        for k in range(indptr[vertex], indptr[vertex + 1]):
+            first = 3 * star[k]
+            for corner in range(3):
+                if origin[first + corner] == vertex:
+                    if twin[first + corner] < 0:
+                        n_open += 1
+                        mesh.outgoing[vertex] = first + corner
+                    elif mesh.outgoing[vertex] < 0:
+                        mesh.outgoing[vertex] = first + corner
+        degree = indptr[vertex + 1] - indptr[vertex]
+        n_fans[vertex] = 0
+        if degree > 0:
+            n_walked = 0
+            half_edge = mesh.outgoing[vertex]
+            while n_walked < degree:
+                n_walked += 1
+                half_edge = twin[before(half_edge)]
+                if half_edge < 0 or half_edge == mesh.outgoing[vertex]:
+                    break
+            n_fans[vertex] = 1 if n_walked == degree and n_open < 2 else 2
+
+
+@njit
+def before(half_edge):
+    return half_edge + 2 if half_edge % 3 == 0 else half_edge - 1
+
+
+@njit
+def after(half_edge):
+    return half_edge - 2 if half_edge % 3 == 2 else half_edge + 1
+
+
+# ring, spoke (MAX_RING,) int32, filled: the neighbours of v, counter-clockwise, and the
+# half-edges from v to them. Returns (size of the ring, number of faces): equal inside, one more
+# neighbour than faces on the outline, (0, 0) if there are too many.
+@njit
+def walk_ring(v, mesh, ring, spoke):
+    origin, twin = mesh.origin, mesh.twin
+    opening = mesh.outgoing[v]
+    half_edge = opening
+    size = 0
+    while size < MAX_RING - 1:
+        corner = half_edge % 3
+        following = half_edge - 2 if corner == 2 else half_edge + 1
+        last = half_edge + 2 if corner == 0 else half_edge - 1
+        ring[size] = origin[following]
+        spoke[size] = half_edge
+        size += 1
+        half_edge = twin[last]
+        if half_edge < 0:
+            ring[size] = origin[last]
+            return size + 1, size
+        if half_edge == opening:
+            return size, size
+    return 0, 0
+
+
+# Do the rings of v and a share only the vertices that stand beside a in the ring of v?
+# ring (size,) int32 starts at a; stamp (n,) int32 holds no value `mark` yet
+@njit
+def meets_link_condition(a, ring, size, n_sides, mesh, stamp, mark):
+    for k in range(size):
+        stamp[ring[k]] = mark
+    n_shared = 0
+    half_edge = mesh.outgoing[a]
+    while True:
+        if stamp[mesh.origin[after(half_edge)]] == mark:
+            n_shared += 1
+        last = before(half_edge)
+        half_edge = mesh.twin[last]
+        if half_edge < 0:
+            if stamp[mesh.origin[last]] == mark:
+                n_shared += 1
+            break
+        if half_edge == mesh.outgoing[a]:
+            break
+    return n_shared == (2 if n_sides == size else 1)
+
+
+# Take a face out that has shrunk to the edge between a and `apex`; its other two sides meet.
+@njit
+def close_face(face, apex, mesh):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    half_edge = 3 * face
+    while origin[half_edge] != apex:
+        half_edge += 1
+    inward, outward = twin[half_edge], twin[before(half_edge)]  # to the apex, and from it
+    if inward >= 0:
+        twin[inward] = outward
+    if outward >= 0:
+        twin[outward] = inward
+    if outgoing[apex] == half_edge or inward < 0:
+        outgoing[apex] = outward
+
+
+# Collapse v onto ring[0]; ring, faces (size,) int32 counter-clockwise from there, NO_INDEX where
+# no face follows. Faces drop out of face_lives (m,) bool.
+@njit
+def collapse(v, ring, faces, size, mesh, face_lives):
+    origin, twin = mesh.origin, mesh.twin
+    a = ring[0]
+    for k in range(size):
+        if faces[k] >= 0:
+            for corner in range(3):
+                if origin[3 * faces[k] + corner] == v:
+                    origin[3 * faces[k] + corner] = a
+    for k, apex in ((0, ring[1]), (size - 1, ring[size - 1])):
+        if faces[k] >= 0:
+            face_lives[faces[k]] = False
+            close_face(faces[k], apex, mesh)
+    if face_lives[mesh.outgoing[a] // 3]:
+        return
+    was_outline = twin[mesh.outgoing[a]] < 0
+    half_edge = 3 * faces[1]  # the first face of the new fan
+    while origin[half_edge] != a:
+        half_edge += 1
+    while was_outline and twin[half_edge] >= 0:  # back to where the fan opens
+        half_edge = after(twin[half_edge])
+    mesh.outgoing[a] = half_edge

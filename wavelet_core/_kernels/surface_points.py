@@ -1,0 +1,285 @@
+"""Kernels of :mod:`wavelet_core.surface`: which face each input point lies in, and how far off."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._jit import njit
+from .half_edges import MAX_RING, after, before
+
+
+class Surface(NamedTuple):
+    """The vertices of a level.
+
+    x, y : (n,) float64, plan coordinates about a local origin
+    z : (n, c) float64, present heights and weighted attributes
+    measured : (n, c) float64, the same as they were in the input
+    """
+
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    z: NDArray[np.float64]
+    measured: NDArray[np.float64]
+
+
+class FacePoints(NamedTuple):
+    """The removed vertices, face by face: those of face f are ``[start[f]:start[f] + count[f]]``.
+
+    start, count : (n_faces,) int32
+    x, y : (capacity,) float64; z : (capacity, c) float64
+    """
+
+    start: NDArray[np.int32]
+    count: NDArray[np.int32]
+    x: NDArray[np.float64]
+    y: NDArray[np.float64]
+    z: NDArray[np.float64]
+
+
+# Which face of the fan (a, b[t], b[t + 1]), t < n_wedges, holds the point at (x, y) from a?
+# bx, by (n_wedges + 1,) float64 from a, counter-clockwise; hint: where to look first
+@njit
+def locate(n_wedges, bx, by, x, y, hint):
+    t = hint
+    while t > 0 and bx[t] * y - by[t] * x < 0.0:
+        t -= 1
+    if t == hint:
+        while t < n_wedges - 1 and bx[t + 1] * y - by[t + 1] * x > 0.0:
+            t += 1
+    if bx[t] * y - by[t] * x >= 0.0 and bx[t + 1] * y - by[t + 1] * x <= 0.0:
+        return t
+    for s in range(n_wedges):  # a fan of more than half a turn misleads the search
+        if bx[s] * y - by[s] * x >= 0.0 and bx[s + 1] * y - by[s + 1] * x <= 0.0:
+            return s
+    return t
+
+
+# rings in CSR: indptr (n_odd + 1,) int64; ring_faces int32; size (n_odd,) int64, filled with the
+# number of points that each collapse moves, its own vertex included
+@njit
+def count_points(start, stop, indptr, ring_faces, points, size):
+    for row in range(start, stop):
+        size[row] = 1
+        for k in range(indptr[row], indptr[row + 1]):
+            if ring_faces[k] >= 0:
+                size[row] += points.count[ring_faces[k]]
+
+
+# Move the points of each collapsed star, and its vertex, to the faces that now cover it.
+# odd (n_odd,) int32; ring, ring_faces int32 from the target on; first (n_odd + 1,) int64, where
+# the points go; corners (n_odd, 3) int32, weights (n_odd, 3), details (n_odd, c) float64, filled
+@njit
+def hand_over(
+    start, stop, odd, indptr, ring, ring_faces, surface, points, first, face_changed,
+    corners, weights, details,
+):  # fmt: skip
+    n_channels = surface.z.shape[1]
+    bx, by = np.empty(MAX_RING), np.empty(MAX_RING)
+    cursor = np.empty(MAX_RING, np.int64)
+    wedge = np.empty(256, np.int32)
+    for row in range(start, stop):
+        v, base = odd[row], indptr[row]
+        size = indptr[row + 1] - base
+        n_wedges = size - 2
+        a = ring[base]
+        ax, ay = surface.x[a], surface.y[a]
+        if first[row + 1] - first[row] > wedge.shape[0]:
+            wedge = np.empty(2 * (first[row + 1] - first[row]), np.int32)
+        for t in range(size - 1):
+            bx[t] = surface.x[ring[base + 1 + t]] - ax
+            by[t] = surface.y[ring[base + 1 + t]] - ay
+            cursor[t] = 0
+
+        x, y = surface.x[v] - ax, surface.y[v] - ay
+        t = locate(n_wedges, bx, by, x, y, 0)
+        wedge[0] = t
+        cursor[t] += 1
+        b, c = ring[base + 1 + t], ring[base + 2 + t]
+        doubled_area = bx[t] * by[t + 1] - by[t] * bx[t + 1]
+        at_b = max((x * by[t + 1] - y * bx[t + 1]) / doubled_area, 0.0)
+        at_c = max((bx[t] * y - by[t] * x) / doubled_area, 0.0)
+        total = max(at_b + at_c, 1.0)
+        at_b, at_c = at_b / total, at_c / total
+        at_a = max(1.0 - at_b - at_c, 0.0)
+        corners[row, 0], corners[row, 1], corners[row, 2] = a, b, c
+        weights[row, 0], weights[row, 1], weights[row, 2] = at_a, at_b, at_c
+        for i in range(n_channels):
+            details[row, i] = surface.z[v, i] - (
+                at_a * surface.z[a, i] + at_b * surface.z[b, i] + at_c * surface.z[c, i]
+            )
+
+        n_found = 1
+        for k in range(size):
+            face = ring_faces[base + k]
+            if face < 0:
+                continue
+            hint = min(max(k - 1, 0), n_wedges - 1)
+            for p in range(points.start[face], points.start[face] + points.count[face]):
+                t = locate(n_wedges, bx, by, points.x[p] - ax, points.y[p] - ay, hint)
+                wedge[n_found] = t
+                cursor[t] += 1
+                n_found += 1
+
+        position = first[row]
+        for t in range(n_wedges):
+            n_here = cursor[t]
+            cursor[t] = position
+            position += n_here
+        p = cursor[wedge[0]]
+        cursor[wedge[0]] += 1
+        points.x[p], points.y[p] = surface.x[v], surface.y[v]
+        for i in range(n_channels):
+            points.z[p, i] = surface.measured[v, i]
+        n_found = 1
+        for k in range(size):
+            face = ring_faces[base + k]
+            if face < 0:
+                continue
+            for q in range(points.start[face], points.start[face] + points.count[face]):
+                t = wedge[n_found]
+                n_found += 1
+                p = cursor[t]
+                cursor[t] += 1
+                points.x[p], points.y[p] = points.x[q], points.y[q]
+                for i in range(n_channels):
+                    points.z[p, i] = points.z[q, i]
+
+        position = first[row]
+        for k in range(size):
+            face = ring_faces[base + k]
+            if face < 0:
+                continue
+            if 1 <= k <= n_wedges:
+                points.start[face] = position
+                points.count[face] = cursor[k - 1] - position
+                position = cursor[k - 1]
+                face_changed[face] = True
+            else:
+                points.count[face] = 0
+
+
+# Copy the points of the given faces, in their order, to the front of other arrays.
+# faces (n,) int32; first (n + 1,) int64, where each face's points go
+@njit
+def copy_points(start, stop, faces, first, points, x, y, z):
+    for k in range(start, stop):
+        p = points.start[faces[k]]
+        for q in range(first[k], first[k + 1]):
+            x[q], y[q] = points.x[p], points.y[p]
+            for i in range(z.shape[1]):
+                z[q, i] = points.z[p, i]
+            p += 1
+
+
+# Errors of the faces that changed, or one of whose corners moved (z_changed (n,) bool).
+# squared (m,) float64: sum over points and channels; squared_z (m,) or (0,): of heights alone;
+# largest_z (m,): the largest squared height error. slope (3 m, c), weight (3 m,) float32 or empty:
+# sums of error times hat function, and of the hat function's own share, for each corner.
+# is_stale (n,) bool: set for the corners of those faces
+@njit
+def sum_over_faces(
+    start, stop, mesh, face_lives, face_changed, z_changed, surface, points,
+    squared, squared_z, largest_z, slope, weight, is_stale, has_moved,
+):  # fmt: skip
+    n_channels = surface.z.shape[1]
+    with_slopes, with_z = weight.shape[0] > 0, squared_z.shape[0] > 0
+    slope_sums = np.empty((3, n_channels))
+    for face in range(start, stop):
+        if not face_lives[face]:
+            continue
+        a, b, c = mesh.origin[3 * face], mesh.origin[3 * face + 1], mesh.origin[3 * face + 2]
+        if not (face_changed[face] or z_changed[a] or z_changed[b] or z_changed[c]):
+            continue
+        face_changed[face] = False
+        is_stale[a], is_stale[b], is_stale[c] = True, True, True
+        has_moved[a], has_moved[b], has_moved[c] = True, True, True
+        sum_all, sum_z, largest = 0.0, 0.0, 0.0
+        weight_a, weight_b, weight_c = 0.0, 0.0, 0.0
+        slope_sums[:] = 0.0
+        if points.count[face] > 0:
+            ax, ay = surface.x[a], surface.y[a]
+            bx, by = surface.x[b] - ax, surface.y[b] - ay
+            cx, cy = surface.x[c] - ax, surface.y[c] - ay
+            per_area = 1.0 / (bx * cy - by * cx)
+            for p in range(points.start[face], points.start[face] + points.count[face]):
+                x, y = points.x[p] - ax, points.y[p] - ay
+                at_b = (x * cy - y * cx) * per_area
+                at_c = (bx * y - by * x) * per_area
+                at_a = 1.0 - at_b - at_c
+                for i in range(n_channels):
+                    error = (
+                        at_a * surface.z[a, i] + at_b * surface.z[b, i] + at_c * surface.z[c, i]
+                    ) - points.z[p, i]
+                    sum_all += error * error
+                    if i == 0:
+                        sum_z += error * error
+                        largest = max(largest, error * error)
+                    if with_slopes:
+                        slope_sums[0, i] += at_a * error
+                        slope_sums[1, i] += at_b * error
+                        slope_sums[2, i] += at_c * error
+                if with_slopes:
+                    weight_a += at_a * (1.0 + at_a)
+                    weight_b += at_b * (1.0 + at_b)
+                    weight_c += at_c * (1.0 + at_c)
+        squared[face], largest_z[face] = sum_all, largest
+        if with_z:
+            squared_z[face] = sum_z
+        if with_slopes:
+            weight[3 * face] = 0.5 * weight_a
+            weight[3 * face + 1] = 0.5 * weight_b
+            weight[3 * face + 2] = 0.5 * weight_c
+            for corner in range(3):
+                for i in range(n_channels):
+                    slope[3 * face + corner, i] = slope_sums[corner, i]
+
+
+# Sums over the star of each vertex with has_moved (n,) bool, which is reset.
+# slope (3 m, c), weight (3 m,) float32 of the corners; vertex_slope (n, c), vertex_weight (n,)
+@njit
+def sum_over_stars(
+    start, stop, mesh, vertex_lives, has_moved, surface, slope, weight, vertex_slope,
+    vertex_weight, is_stale,
+):  # fmt: skip
+    n_channels = surface.z.shape[1]
+    for v in range(start, stop):
+        if not has_moved[v]:
+            continue
+        has_moved[v] = False
+        if not vertex_lives[v] or mesh.outgoing[v] < 0:
+            continue
+        vertex_weight[v] = 1.0
+        for i in range(n_channels):
+            vertex_slope[v, i] = surface.z[v, i] - surface.measured[v, i]
+        half_edge = mesh.outgoing[v]
+        while half_edge >= 0:
+            vertex_weight[v] += weight[half_edge]
+            for i in range(n_channels):
+                vertex_slope[v, i] += slope[half_edge, i]
+            half_edge = mesh.twin[before(half_edge)]
+            if half_edge == mesh.outgoing[v]:
+                break
+
+
+# The minimum-norm update of one step (Eqs. 47 and 50), in place on z (n, c) and integrals (n,).
+# support in CSR: indptr (n_odd + 1,), columns int32; weights float64
+@njit
+def update_heights(odd, indptr, columns, weights, details, locked, integrals, z, z_changed):
+    n_channels = z.shape[1]
+    for row in range(odd.shape[0]):
+        for k in range(indptr[row], indptr[row + 1]):
+            integrals[columns[k]] += weights[k] * integrals[odd[row]]
+    for row in range(odd.shape[0]):
+        squared = 0.0
+        for k in range(indptr[row], indptr[row + 1]):
+            if not locked[columns[k]]:
+                squared += integrals[columns[k]] ** 2
+        if squared <= 0.0:
+            continue
+        factor = integrals[odd[row]] / squared
+        for k in range(indptr[row], indptr[row + 1]):
+            if not locked[columns[k]]:
+                z_changed[columns[k]] = True
+                for i in range(n_channels):
+                    z[columns[k], i] += factor * integrals[columns[k]] * details[row, i]

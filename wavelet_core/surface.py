@@ -1,0 +1,153 @@
+"""Pyramids that keep the surface: partition by vertical error, barycentric prediction.
+
+Every removal is ranked by what it does to the vertical errors of *all* input vertices, so the
+coarse TINs are about the best of their size. Plan positions never change, so every input vertex
+lies in exactly one face of each level and follows it through the collapses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._surface_level import SurfaceLevel
+from ._validate import FloatArray, frozen
+from .lifting import Step
+
+#: Norms by which a removal is judged.
+NORMS = ("rms", "max")
+#: Share of the vertices that may be odd at one level, at most.
+REMOVAL_FRACTION = 0.25
+#: Costs beyond this multiple of the last level's dearest are not worked out.
+FORESIGHT = 4.0
+#: With an update and a tolerance, how often a level is tried with fewer vertices.
+N_ATTEMPTS = 6
+#: An analysis by tolerance ends when a level takes less than this part of the vertices.
+LEAST_PROGRESS = 1e-3
+
+
+class SurfaceRules(NamedTuple):
+    """When to stop, and how to rank.
+
+    levels : int, the most levels
+    norm : "rms" or "max"
+    with_update : bool, minimum-norm update or none
+    removal_fraction : float in (0, 1]
+    target_vertices : int
+    max_error, max_rms : float, in the unit of z; inf for no limit
+    """
+
+    levels: int
+    norm: str = "rms"
+    with_update: bool = True
+    removal_fraction: float = REMOVAL_FRACTION
+    target_vertices: int = 0
+    max_error: float = np.inf
+    max_rms: float = np.inf
+
+    @property
+    def needs_proof(self) -> bool:
+        """Whether a step may break a tolerance that its ranking did not see."""
+        return self.max_rms < np.inf or (self.max_error < np.inf and self.with_update)
+
+    def are_kept_by(self, level: SurfaceLevel) -> bool:
+        """Whether the errors of all input vertices keep the tolerances."""
+        if self.max_rms < np.inf and level.squared_errors() > self.max_rms**2 * level.n_input:
+            return False
+        return level.largest_error() <= self.max_error
+
+
+class SurfaceAnalysis(NamedTuple):
+    """Coarse coefficients ``(n_coarse, n_channels)``, and the steps, the finest first."""
+
+    coarse: FloatArray
+    steps: list[Step]
+
+
+def analyse_surface(
+    plan: FloatArray,
+    columns: FloatArray,
+    faces: NDArray[np.int32],
+    locked: NDArray[np.bool_],
+    weights: FloatArray,
+    rules: SurfaceRules,
+    report: Callable[[int], None],
+) -> SurfaceAnalysis:
+    """Return the coarse coefficients and the steps of a surface-guided analysis.
+
+    Parameters
+    ----------
+    plan : ndarray, shape (n_vertices, 2)
+        x and y.
+    columns : ndarray, shape (n_vertices, n_channels)
+        z and the attributes, in input units.
+    faces : ndarray of int32, shape (n_faces, 3)
+        A manifold, counter-clockwise in plan.
+    locked : ndarray of bool, shape (n_vertices,)
+    weights : ndarray, shape (n_channels,)
+        What the errors of each channel count for; 1 for z.
+    rules : SurfaceRules
+    report : callable
+        Called with the present number of vertices between the passes; may raise to stop.
+    """
+    level = SurfaceLevel(plan, columns * weights, faces, locked, rules.with_update)
+    steps: list[Step] = []
+    cutoff = np.inf
+    while len(steps) < rules.levels:
+        taken = _take_step(level, rules, cutoff, report)
+        if taken is None:
+            break
+        level, step, cutoff = taken
+        steps.append(step)
+    ids = level.ids
+    coarse = level.heights / weights
+    unchanged = locked[ids] if rules.with_update else np.ones(len(ids), dtype=bool)
+    coarse[unchanged] = columns[ids[unchanged]]  # to the bit
+    for step in steps:
+        step.details[:] /= weights
+        frozen(step.details)
+    return SurfaceAnalysis(coarse, steps)
+
+
+def _take_step(
+    level: SurfaceLevel, rules: SurfaceRules, cutoff: float, report: Callable[[int], None]
+) -> tuple[SurfaceLevel, Step, float] | None:
+    """Take one step; return the level after it, the step, and the next cutoff of costs."""
+    report(level.n_vertices)
+    max_odd = level.n_vertices - rules.target_vertices
+    if max_odd <= 0:
+        return None
+    slots = _candidates(level, rules, cutoff)
+    budget = rules.max_rms**2 * level.n_input - level.squared_errors()
+    odd = level.independent(slots, max_odd, budget)
+    if len(odd) == 0:
+        return None
+    cost = level.costs(odd)
+    dearest = float(cost.max())
+    next_cutoff = FORESIGHT * dearest if dearest > 0 else np.inf
+    report(level.n_vertices)
+    if not rules.needs_proof:
+        return level, level.remove(odd), next_cutoff
+    cheapest_first = odd[np.argsort(cost, kind="stable")]
+    for attempt in range(N_ATTEMPTS):
+        n_odd = len(odd) >> attempt
+        if n_odd == 0 or (attempt and n_odd < LEAST_PROGRESS * level.n_vertices):
+            return None
+        trial = level.snapshot()
+        step = trial.remove(np.sort(cheapest_first[:n_odd]))
+        if rules.are_kept_by(trial):
+            return trial, step, next_cutoff
+    return None
+
+
+def _candidates(level: SurfaceLevel, rules: SurfaceRules, cutoff: float) -> NDArray[np.int32]:
+    """Return the slots that may go; dearer ones are looked at where few others are left."""
+    level.rank(rules.norm, rules.max_error, cutoff)
+    slots = level.candidates(rules.removal_fraction, cutoff)
+    if cutoff < np.inf and len(slots) < LEAST_PROGRESS * level.n_vertices:
+        level.rank(rules.norm, rules.max_error, np.inf)
+        slots = level.candidates(rules.removal_fraction, np.inf)
+    return slots
