@@ -1,0 +1,85 @@
+"""Kernels with numba, and without it."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import wavelet_core
+from wavelet_core import OptionError, SlowFallbackWarning, analyse, synthetic
+from wavelet_core._kernels import _jit
+
+PACKAGE = Path(wavelet_core.__file__).parent
+
+
+def run_python(code, folder, **environment):
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(folder), **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    return run.stdout.strip()
+
+
+@pytest.mark.skipif(not _jit.HAS_NUMBA, reason="compiles kernels, and numba is off")
+def test_a_change_in_one_kernel_file_voids_the_compiled_code_of_the_others(tmp_path):
+    """Numba looks at the caller's file alone; a stale callee would go on working, wrongly."""
+    package = tmp_path / "wavelet_core"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    kernels = package / "_kernels"
+    head = "from ._jit import njit\n"
+    (kernels / "outer.py").write_text(
+        f"{head}from .inner import inner\n@njit\ndef outer(x):\n    return inner(x)\n"
+    )
+    code = "from wavelet_core._kernels.outer import outer; print(outer(1.0))"
+    for factor in (2, 3):
+        (kernels / "inner.py").write_text(f"{head}@njit\ndef inner(x):\n    return {factor} * x\n")
+        for _ in range(2):  # compiled, then from the cache
+            assert run_python(code, tmp_path, NUMBA_CACHE_DIR="") == f"{factor}.0"
+
+
+def test_without_numba_one_warning_says_so():
+    code = (
+        "import warnings; from wavelet_core import analyse, synthetic\n"
+        "with warnings.catch_warnings(record=True) as caught:\n"
+        "    warnings.simplefilter('always')\n"
+        "    for _ in range(2): analyse(synthetic.hills(5, 5), levels=1)\n"
+        "print([(w.category.__name__, str(w.message)) for w in caught])"
+    )
+    told = run_python(code, PACKAGE.parent, TERRAIN_WAVELETS_NO_NUMBA="1")
+    assert told.count("SlowFallbackWarning") == 1
+    assert "pip install numba" in told
+    assert run_python(code, PACKAGE.parent, TERRAIN_WAVELETS_NO_NUMBA="") == "[]"
+
+
+def test_without_numba_too_large_an_input_is_refused(monkeypatch):
+    monkeypatch.setattr(_jit, "HAS_NUMBA", False)
+    monkeypatch.setattr(_jit, "MAX_VERTICES_WITHOUT_NUMBA", 100)
+    with pytest.raises(OptionError, match=r"121 vertices .* without numba .*pip install numba"):
+        analyse(synthetic.hills(11, 11), levels=1)
+
+
+def test_the_warning_is_a_user_warning():
+    assert issubclass(SlowFallbackWarning, UserWarning)
+
+
+def test_every_kernel_runs_over_ranges_like_over_the_whole():
+    seen = []
+    _jit.run_in_ranges(lambda start, stop: seen.append((start, stop)), 10)
+    assert seen == [(0, 10)]
+    if _jit.HAS_NUMBA:
+        covered = np.zeros(10_000, dtype=int)
+
+        def count(start, stop):
+            covered[start:stop] += 1
+
+        _jit.run_in_ranges(count, 10_000)
+        assert (covered == 1).all()
