@@ -1,8 +1,8 @@
-"""Figs. 5-7: errors over 12 levels of all designs, and how the surface looks at levels 12 and 24."""
+"""Figs. 5-7: errors over 12 levels of all designs, and the surface at levels 12 and 24."""
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import pairwise, product
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -61,7 +61,7 @@ def run(sample: Sample, pictures: Path) -> dict[str, Any]:
 def share_removed(pyramid: Pyramid) -> float:
     """Return the mean share of the vertices that a level removes."""
     counts = [pyramid.n_vertices(level) for level in range(pyramid.n_levels + 1)]
-    return float(np.mean([1 - a / b for a, b in zip(counts, counts[1:], strict=False)]))
+    return float(np.mean([1 - a / b for a, b in pairwise(counts)]))
 
 
 def flipped(pyramid: Pyramid) -> float:
@@ -92,7 +92,7 @@ def draw_errors(sample: Sample, designs: dict[str, Any], path: Path) -> None:
         high = min(max(axis.get_ylim()[1] for axis in row), 1e3 * low)
         for axis in row:
             axis.set_ylim(low, high)
-    figure.savefig(path, dpi=80)
+    figure.savefig(path, dpi=70)
     plt.close(figure)
 
 
@@ -108,7 +108,7 @@ def draw_levels(sample: Sample, path: Path) -> None:
         mesh = meshes[level]
         shade(axis, mesh.vertices, mesh.faces)
         axis.set_title(f"{pyramid.n_levels - level} steps, {mesh.n_vertices:,} vertices")
-    figure.savefig(path, dpi=80)
+    figure.savefig(path, dpi=70)
     plt.close(figure)
 
 

@@ -276,6 +276,7 @@ def test_local_thresholds_spare_a_rough_corner():
     assert nearby[0] < 0.5
 
 
+@pytest.mark.large
 def test_noise_that_is_not_white_is_met_level_by_level():
     x = np.arange(100.0)
     rng = np.random.default_rng(0)

@@ -40,6 +40,7 @@ def test_denoising_beats_gaussian_and_median_at_their_best():
     assert ours < median
 
 
+@pytest.mark.large
 def test_noise_is_estimated_when_it_is_not_given():
     truth = terrain(50)
     noisy = mesh_of(truth + np.random.default_rng(0).normal(0, 0.4, truth.shape))
@@ -93,6 +94,7 @@ def test_locked_vertices_keep_their_values():
     assert np.abs(result.vertices - mesh.vertices)[~locked].max() > 0.1
 
 
+@pytest.mark.large
 def test_meshes_too_large_to_keep_give_the_same_result(monkeypatch):
     truth = terrain(40) + np.random.default_rng(2).normal(0, 0.3, (40, 40))
     whole = denoise(mesh_of(truth), 0.3, n_pyramids=3).vertices[:, 2]

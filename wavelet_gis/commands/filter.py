@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -92,7 +93,9 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         raise OptionError("nothing to change; give --gain, --band, --band-metres or --denoise.")
     record = read_pyramid(arguments.file)
     _check_suffix(arguments.output, record)
-    pyramid, done, figures = record.pyramid, [], {}
+    pyramid = record.pyramid
+    done: list[str] = []
+    figures: dict[str, Any] = {}
     if arguments.denoise is not None:
         pyramid, figures = _denoised(record, arguments, console)
         done.append(_denoise_line(figures))
@@ -159,10 +162,15 @@ def _denoised(
                 n_pyramids=arguments.pyramids,
                 channels=[name],
                 locked=pyramid.locked,
-                progress=lambda fraction, k=k: progress((k + fraction) / len(channels)),
+                progress=_part_of(progress, k, len(channels)),
             )
             pyramid = relifted(pyramid, mesh)
     return pyramid, {"sigma": sigmas, "n_pyramids": arguments.pyramids}
+
+
+def _part_of(progress: Callable[[float], bool], k: int, n: int) -> Callable[[float], bool]:
+    """Return the progress of the k-th of n equal parts."""
+    return lambda fraction: progress((k + fraction) / n)
 
 
 def _write(
