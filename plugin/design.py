@@ -11,7 +11,10 @@ from .translation import tr
 
 # Kept here, and not asked of wavelet_core, so that the toolbox lists them where SciPy is missing;
 # a test compares them with the core's.
-PARTITIONS = ("quadric", "colouring", "random")
+#: Leaves the choice to the core, whose defaults are those of the command line.
+DEFAULT = "default"
+PARTITIONS = ("surface", "quadric", "colouring", "random")
+NORMS = ("rms", "max")
 PREDICTIONS = (
     "geometric",
     "uniform",
@@ -40,8 +43,8 @@ def choice(name, description, values, default=None):
     )
 
 
-def add_design_parameters(algorithm) -> None:
-    """Declare the levels, the stop rules, the design of the wavelets and the vertical unit."""
+def add_rule_parameters(algorithm) -> None:
+    """Declare the most levels and the other stop rules."""
     algorithm.add(
         QgsProcessingParameterNumber(
             "LEVELS", tr("Most levels"), INTEGER, None, optional=True, minValue=1, maxValue=1000
@@ -73,29 +76,43 @@ def add_design_parameters(algorithm) -> None:
         tr("The same for the root mean square over all input points, in the unit of elevation."),
         advanced=True,
     )
+
+
+def add_design_parameters(algorithm) -> None:
+    """Declare the design of the wavelets and the vertical unit."""
     algorithm.add(
-        choice("PARTITION", tr("Partition"), PARTITIONS),
+        choice("PARTITION", tr("Partition"), (DEFAULT, *PARTITIONS)),
         tr(
-            "Which vertices go at a level (the paper's odd vertices). <i>quadric</i>: those of "
-            "least cost by generalised quadric and bending energy, as in the paper; "
+            "Which vertices go at a level (the paper's odd vertices). <i>surface</i>, the default: "
+            "those that raise the vertical error at all input points least; <i>quadric</i>: those "
+            "of least cost by generalised quadric and bending energy, as in the paper; "
             "<i>colouring</i>: regardless of shape, the paper's baseline; <i>random</i>: in random "
             "order."
         ),
         advanced=True,
     )
     algorithm.add(
-        choice("PREDICTION", tr("Prediction filter"), PREDICTIONS),
+        choice("NORM", tr("Error kept small"), (DEFAULT, *NORMS)),
         tr(
-            "How a removed vertex is estimated from its neighbours; what is left over is its "
-            "detail. In the paper: <i>geometric</i> GL, <i>uniform</i> UG, <i>cotangent</i> CL, "
-            "<i>nnls</i> NNLS (non-negative least squares), <i>least_squares</i> LS (can be "
-            "unstable); <i>barycentric</i>: from the coarse triangle that now covers it; "
-            "<i>plane</i>: from the plane fitted to the neighbours."
+            "By what the <i>surface</i> partition judges: the root mean square (<i>rms</i>) or the "
+            "largest error (<i>max</i>). By default the largest where that is the stop rule."
         ),
         advanced=True,
     )
     algorithm.add(
-        choice("UPDATE", tr("Update filter"), UPDATES),
+        choice("PREDICTION", tr("Prediction filter"), (DEFAULT, *PREDICTIONS)),
+        tr(
+            "How a removed vertex is estimated from its neighbours; what is left over is its "
+            "detail. By default <i>barycentric</i> with the <i>surface</i> partition, else "
+            "<i>geometric</i>. In the paper: <i>geometric</i> GL, <i>uniform</i> UG, "
+            "<i>cotangent</i> CL, <i>nnls</i> NNLS (non-negative least squares), "
+            "<i>least_squares</i> LS (can be unstable); <i>barycentric</i>: from the coarse "
+            "triangle that now covers it; <i>plane</i>: from the plane fitted to the neighbours."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
+        choice("UPDATE", tr("Update filter"), (DEFAULT, *UPDATES)),
         tr(
             "How details are handed on to the vertices that stay. In the paper: "
             "<i>minimum_norm</i> MN (keeps the weighted mean height at every level), "
@@ -136,8 +153,8 @@ def vertical_unit(algorithm, parameters, context):
     return None if unit in ("", VERTICAL_UNITS[0]) else unit
 
 
-def design_options(algorithm, parameters, context, z_scale: float) -> dict:
-    """Return the options of ``wavelet_core.analyse`` that the parameters say.
+def rule_options(algorithm, parameters, context, z_scale: float) -> dict:
+    """Return the stop rules of ``wavelet_core.analyse`` that the parameters say.
 
     Parameters
     ----------
@@ -157,9 +174,17 @@ def design_options(algorithm, parameters, context, z_scale: float) -> dict:
         "target_vertices": number("TARGET_VERTICES", algorithm.parameterAsInt),
         "max_error": number("MAX_ERROR", algorithm.parameterAsDouble, z_scale),
         "max_rms": number("MAX_RMS", algorithm.parameterAsDouble, z_scale),
-        "partition": algorithm.parameterAsString(parameters, "PARTITION", context),
-        "prediction": algorithm.parameterAsString(parameters, "PREDICTION", context),
-        "update": algorithm.parameterAsString(parameters, "UPDATE", context),
+    }
+
+
+def design_options(algorithm, parameters, context) -> dict:
+    """Return the design of ``wavelet_core.analyse`` that the parameters say."""
+    chosen = {
+        name.lower(): algorithm.parameterAsString(parameters, name, context)
+        for name in ("PARTITION", "NORM", "PREDICTION", "UPDATE")
+    }
+    return {
+        **{name: value for name, value in chosen.items() if value not in ("", DEFAULT)},
         "signal": algorithm.parameterAsString(parameters, "SIGNAL", context),
         "bending_weight": algorithm.parameterAsDouble(parameters, "BENDING_WEIGHT", context),
     }

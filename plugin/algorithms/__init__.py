@@ -12,12 +12,14 @@ from .extract_level import ExtractLevel
 from .filter_levels import FilterLevels
 from .quality_report import QualityReport
 from .reconstruct import Reconstruct
+from .simplify_dem import SimplifyDem
 
 #: In the order of the toolbox's groups.
 ALGORITHMS = (
     AnalyseDem,
     AnalysePointCloud,
     AnalyseTin,
+    SimplifyDem,
     ExtractLevel,
     Reconstruct,
     FilterLevels,

@@ -9,7 +9,12 @@ from qgis.core import (
 )
 
 from ..base import TerrainWaveletsAlgorithm
-from ..design import add_design_parameters, design_options
+from ..design import (
+    add_design_parameters,
+    add_rule_parameters,
+    design_options,
+    rule_options,
+)
 
 
 class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
@@ -21,6 +26,7 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         """Declare the design, the pyramid file, the coarse TIN and the figures."""
         from ..pyramids import add_figure_outputs
 
+        add_rule_parameters(self)
         add_design_parameters(self)
         self.add(
             QgsProcessingParameterFileDestination(
@@ -67,7 +73,8 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         pyramid = analyse(
             terrain.mesh,
             progress=progress(feedback, 0.05, 0.55),
-            **design_options(self, parameters, context, terrain.frame.z_scale),
+            **rule_options(self, parameters, context, terrain.frame.z_scale),
+            **design_options(self, parameters, context),
             **self.more_options(parameters, context, terrain),
         )
         feedback.setProgressText(self.tr("Measuring the errors of every level"))

@@ -53,7 +53,9 @@ class ClusterDetails(PyramidAlgorithm):
             "Groups terrain by its scale signature: how much detail each place has at each level. "
             "Without a teacher, places that are alike form clusters, numbered from smooth to "
             "rough. With training areas, or with the classes that some points of a LAS file have, "
-            "the classes are learned and predicted for the rest."
+            "the classes are learned and predicted for the rest. Analyse with the partition "
+            "<i>random</i> and the prediction <i>plane</i> for levels that mean the same scale "
+            "everywhere."
         )
 
     def initAlgorithm(self, configuration=None):

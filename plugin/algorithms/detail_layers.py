@@ -40,7 +40,9 @@ class DetailLayers(PyramidAlgorithm):
             "Shows at which scale the terrain has its detail: a point for every vertex that the "
             "analysis removed, with the level at which it went and its detail vector (the wavelet "
             "coefficients). Points are coloured by level and sized by magnitude, as in Fig. 10b "
-            "of the paper. Level 0 is the coarsest."
+            "of the paper. Level 0 is the coarsest. For scales that mean the same everywhere, "
+            "analyse with the partition <i>random</i> and the prediction <i>plane</i>; the default "
+            "partition takes detail out where it matters least first."
         )
 
     def initAlgorithm(self, configuration=None):

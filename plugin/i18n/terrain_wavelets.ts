@@ -49,6 +49,31 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/_dem_input.py"/>
+    <source>Band</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_dem_input.py"/>
+    <source>Band with the elevations.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_dem_input.py"/>
+    <source>DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_dem_input.py"/>
+    <source>Raster of elevations, in any CRS; degrees are worked on in a local metric frame. Cells without data become holes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_dem_input.py"/>
+    <source>Reading the DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
     <source>Changed since its analysis: {}</source>
     <translation type="unfinished"></translation>
@@ -76,31 +101,6 @@
   <message>
     <location filename="../../plugin/algorithms/analyse_dem.py"/>
     <source>Analyse DEM</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_dem.py"/>
-    <source>Band</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_dem.py"/>
-    <source>Band with the elevations.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_dem.py"/>
-    <source>DEM</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_dem.py"/>
-    <source>Raster of elevations, in any CRS; degrees are worked on in a local metric frame. Cells without data become holes.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_dem.py"/>
-    <source>Reading the DEM</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -395,7 +395,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Groups terrain by its scale signature: how much detail each place has at each level. Without a teacher, places that are alike form clusters, numbered from smooth to rough. With training areas, or with the classes that some points of a LAS file have, the classes are learned and predicted for the rest.</source>
+    <source>Groups terrain by its scale signature: how much detail each place has at each level. Without a teacher, places that are alike form clusters, numbered from smooth to rough. With training areas, or with the classes that some points of a LAS file have, the classes are learned and predicted for the rest. Analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt; for levels that mean the same scale everywhere.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -585,7 +585,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
-    <source>Shows at which scale the terrain has its detail: a point for every vertex that the analysis removed, with the level at which it went and its detail vector (the wavelet coefficients). Points are coloured by level and sized by magnitude, as in Fig. 10b of the paper. Level 0 is the coarsest.</source>
+    <source>Shows at which scale the terrain has its detail: a point for every vertex that the analysis removed, with the level at which it went and its detail vector (the wavelet coefficients). Points are coloured by level and sized by magnitude, as in Fig. 10b of the paper. Level 0 is the coarsest. For scales that mean the same everywhere, analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;; the default partition takes detail out where it matters least first.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1004,6 +1004,101 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Gives the TIN of a number of vertices, or the TIN that is exact enough, with a small error at all cells of the DEM. Say one of the three: how many vertices, the largest error, or the root mean square error.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>In the unit of the CRS; empty for the grid of the DEM.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Largest error at all cells, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Mesh of the TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>No cell is farther above or below the TIN, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>No output is chosen; choose a TIN, a raster, a mesh or a pyramid.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>RMSE</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>RMSE at all cells, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Raster of the TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Root mean square error over all cells, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Say one of the three: the number of vertices, the largest error, or the RMSE.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Simplified TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Simplify DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Simplifying (the first run also compiles, up to half a minute)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>The TIN evaluated at the cell centres.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>The TIN has exactly so many, if it can get there.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>The reversible pyramid whose coarsest level the TIN is.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>simplify,thin,generalise,decimate,tin,mesh,2dm,dem,level of detail</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/base.py"/>
     <source>Also returned</source>
     <translation type="unfinished"></translation>
@@ -1085,7 +1180,17 @@
   </message>
   <message>
     <location filename="../../plugin/design.py"/>
-    <source>How a removed vertex is estimated from its neighbours; what is left over is its detail. In the paper: &lt;i&gt;geometric&lt;/i&gt; GL, &lt;i&gt;uniform&lt;/i&gt; UG, &lt;i&gt;cotangent&lt;/i&gt; CL, &lt;i&gt;nnls&lt;/i&gt; NNLS (non-negative least squares), &lt;i&gt;least_squares&lt;/i&gt; LS (can be unstable); &lt;i&gt;barycentric&lt;/i&gt;: from the coarse triangle that now covers it; &lt;i&gt;plane&lt;/i&gt;: from the plane fitted to the neighbours.</source>
+    <source>By what the &lt;i&gt;surface&lt;/i&gt; partition judges: the root mean square (&lt;i&gt;rms&lt;/i&gt;) or the largest error (&lt;i&gt;max&lt;/i&gt;). By default the largest where that is the stop rule.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Error kept small</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>How a removed vertex is estimated from its neighbours; what is left over is its detail. By default &lt;i&gt;barycentric&lt;/i&gt; with the &lt;i&gt;surface&lt;/i&gt; partition, else &lt;i&gt;geometric&lt;/i&gt;. In the paper: &lt;i&gt;geometric&lt;/i&gt; GL, &lt;i&gt;uniform&lt;/i&gt; UG, &lt;i&gt;cotangent&lt;/i&gt; CL, &lt;i&gt;nnls&lt;/i&gt; NNLS (non-negative least squares), &lt;i&gt;least_squares&lt;/i&gt; LS (can be unstable); &lt;i&gt;barycentric&lt;/i&gt;: from the coarse triangle that now covers it; &lt;i&gt;plane&lt;/i&gt;: from the plane fitted to the neighbours.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1170,7 +1275,7 @@
   </message>
   <message>
     <location filename="../../plugin/design.py"/>
-    <source>Which vertices go at a level (the paper's odd vertices). &lt;i&gt;quadric&lt;/i&gt;: those of least cost by generalised quadric and bending energy, as in the paper; &lt;i&gt;colouring&lt;/i&gt;: regardless of shape, the paper's baseline; &lt;i&gt;random&lt;/i&gt;: in random order.</source>
+    <source>Which vertices go at a level (the paper's odd vertices). &lt;i&gt;surface&lt;/i&gt;, the default: those that raise the vertical error at all input points least; &lt;i&gt;quadric&lt;/i&gt;: those of least cost by generalised quadric and bending energy, as in the paper; &lt;i&gt;colouring&lt;/i&gt;: regardless of shape, the paper's baseline; &lt;i&gt;random&lt;/i&gt;: in random order.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -67,7 +67,7 @@ def test_dem_to_coarse_tin_and_details(run_model, dem):
         {
             "dem": dem,
             "levels": 4,
-            "min_magnitude": 0.5,
+            "min_magnitude": 0.1,
             "pyramid": "TEMPORARY_OUTPUT",
             "coarse_tin": "TEMPORARY_OUTPUT",
             "details_by_level": "TEMPORARY_OUTPUT",
@@ -77,7 +77,7 @@ def test_dem_to_coarse_tin_and_details(run_model, dem):
     assert layers["Coarse TIN"].renderer().type() == "graduatedSymbol"
     details = layers["Details by level"]
     assert details.renderer().type() == "categorizedSymbol"
-    assert min(f["magnitude"] for f in details.getFeatures()) >= 0.5
+    assert min(f["magnitude"] for f in details.getFeatures()) >= 0.1
     assert details.crs().authid() == "EPSG:2154"
 
 

@@ -15,6 +15,7 @@ ALGORITHMS = (
     "analysepointcloud",
     "analysetin",
     "extractlevel",
+    "simplifydem",
     "reconstruct",
     "detaillayers",
     "clusterdetails",

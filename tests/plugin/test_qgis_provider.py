@@ -12,6 +12,7 @@ IDS = {
     "filterlevels",
     "qualityreport",
     "reconstruct",
+    "simplifydem",
 }
 
 
