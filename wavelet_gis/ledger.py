@@ -203,8 +203,9 @@ def _quantum(
 def _on_grid(
     values: NDArray[np.float64], quantum: float, remainder: NDArray[np.float64] | None
 ) -> NDArray[np.float64]:
+    # Adding zero turns -0.0 into 0.0, so that the sign of a zero does not hang on that of an error.
     if remainder is None:
-        return quantum * np.rint(values / quantum)
+        return quantum * np.rint(values / quantum) + 0.0
     return quantum * np.rint((values - remainder) / quantum) + remainder
 
 

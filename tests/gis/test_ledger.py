@@ -49,6 +49,13 @@ def test_another_machine_may_round_otherwise(original, seed):
     assert same_bits(column.restore(elsewhere), original)
 
 
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_the_sign_of_zero_does_not_hang_on_that_of_the_error(dtype):
+    original = np.array([1.0, 0.0, -0.0, 0.0], dtype)
+    column = exact_column(original, original.astype(float) + 1e-14)
+    assert same_bits(column.restore(original.astype(float) - 1e-14), original)
+
+
 def test_integers_and_plain_float32_cost_nothing():
     rng = np.random.default_rng(0)
     for original in (
