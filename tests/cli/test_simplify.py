@@ -1,0 +1,84 @@
+"""The command simplify: a TIN of a size or an accuracy, and any size out of a stored pyramid."""
+
+import numpy as np
+import pytest
+import rasterio
+from gis.samples import hills, write_las, write_tif
+
+from wavelet_gis.meshfiles import MESH_SUFFIXES
+
+
+@pytest.fixture
+def dem(tmp_path):
+    """Return a DEM of hills, 40 x 50 cells."""
+    return write_tif(tmp_path / "dem.tif", hills())
+
+
+@pytest.mark.parametrize("suffix", [".gpkg", *MESH_SUFFIXES, ".tif"])
+def test_each_format_holds_the_asked_number(done, dem, tmp_path, suffix):
+    output = tmp_path / f"out{suffix}"
+    figures = done("simplify", dem, output, "--vertices", 300, "--json").figures
+    assert figures["n_vertices"] == 300
+    assert figures["n_input_vertices"] == 2000
+    assert output.stat().st_size > 0
+
+
+def test_the_largest_error_is_kept_at_every_cell_of_the_raster(done, dem, tmp_path):
+    output = tmp_path / "out.tif"
+    figures = done("simplify", dem, output, "--max-error", 0.5, "--json").figures
+    with rasterio.open(dem) as original, rasterio.open(output) as simplified:
+        error = simplified.read(1).astype(float) - original.read(1).astype(float)
+    assert np.abs(error).max() <= 0.5 * (1 + 1e-5)  # the raster is of 32-bit numbers
+    assert figures["max_error"] <= 0.5
+    assert figures["n_vertices"] < 1000
+
+
+def test_the_root_mean_square_is_kept_and_used_up(done, dem, tmp_path):
+    figures = done("simplify", dem, tmp_path / "out.ply", "--rmse", 0.3, "--json").figures
+    assert 0.27 <= figures["rmse"] <= 0.3
+
+
+def test_max_norm_has_the_smaller_largest_error(done, dem, tmp_path):
+    by_norm = {
+        norm: done(
+            "simplify", dem, tmp_path / f"{norm}.ply", "--vertices", 150, "--norm", norm, "--json"
+        ).figures
+        for norm in ("rms", "max")
+    }
+    assert by_norm["max"]["max_error"] < by_norm["rms"]["max_error"]
+    assert by_norm["rms"]["rmse"] < by_norm["max"]["rmse"]
+
+
+def test_a_point_cloud_is_simplified_with_its_attributes(done, tmp_path):
+    cloud = write_las(tmp_path / "cloud.las")
+    output = tmp_path / "out.ply"
+    done("simplify", cloud, output, "--vertices", 50, "--attributes", "intensity")
+    header = output.read_bytes().split(b"end_header")[0]
+    assert b"property double intensity" in header
+
+
+def test_one_rule_is_needed(command, dem, tmp_path):
+    assert command("simplify", dem, tmp_path / "out.ply").code == 2
+    both = ("--vertices", 9, "--max-error", 1)
+    assert command("simplify", dem, tmp_path / "out.ply", *both).code == 2
+
+
+def test_two_vertices_are_refused(refused, dem, tmp_path):
+    refused("simplify", dem, tmp_path / "out.ply", "--vertices", 2)
+
+
+def test_raster_options_are_refused_for_a_tin(refused, dem, tmp_path):
+    refused("simplify", dem, tmp_path / "out.ply", "--vertices", 99, "--cog")
+
+
+def test_extract_gives_any_size_and_any_accuracy(done, refused, dem, tmp_path):
+    pyramid = tmp_path / "pyramid.gpkg"
+    done("analyse", dem, pyramid, "--target-vertices", 100)
+    sized = done("extract", pyramid, tmp_path / "a.ply", "--vertices", 777, "--json").figures
+    assert sized["n_vertices"] == 777
+    output = tmp_path / "b.tif"
+    done("extract", pyramid, output, "--max-error", 2.0)
+    with rasterio.open(dem) as original, rasterio.open(output) as simplified:
+        error = simplified.read(1).astype(float) - original.read(1).astype(float)
+    assert np.abs(error).max() <= 2.0 * (1 + 1e-5)
+    refused("extract", pyramid, tmp_path / "c.ply", "--vertices", 50)
