@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ._kernels.metrics import errors_under_faces, sort_into_cells
 from ._validate import FloatArray
+from .errors import Cancelled
 from .mesh import TriangleMesh
 from .pyramid import Pyramid
 
@@ -75,8 +77,23 @@ def surface_errors(mesh: TriangleMesh, points: FloatArray) -> FloatArray:
     return errors
 
 
-def level_errors(pyramid: Pyramid) -> list[LevelErrors]:
-    """Return size and errors of every level, the finest first."""
+def level_errors(
+    pyramid: Pyramid, progress: Callable[[float], bool | None] | None = None
+) -> list[LevelErrors]:
+    """Return size and errors of every level, the finest first.
+
+    Parameters
+    ----------
+    pyramid : Pyramid
+        What is measured.
+    progress : callable, optional
+        Called with a fraction in [0, 1] after each level; the work stops when it returns False.
+
+    Raises
+    ------
+    Cancelled
+        ``progress`` returned False.
+    """
     finest = pyramid.mesh(pyramid.n_levels)
     reference = _columns(finest)
     extent = reference.max(axis=0) - reference.min(axis=0)
@@ -98,6 +115,8 @@ def level_errors(pyramid: Pyramid) -> list[LevelErrors]:
                 len(errors) - len(covered),
             )
         )
+        if progress is not None and progress(len(rows) / (pyramid.n_levels + 1)) is False:
+            raise Cancelled("measuring the errors was cancelled; nothing was kept.")
     return rows[::-1]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,15 +65,21 @@ class PyramidRecord:
     errors: tuple[LevelErrors, ...] | None = None
     history: tuple[str, ...] = ()
 
-    def with_errors(self) -> PyramidRecord:
-        """Return the record with the errors of every level computed."""
+    def with_errors(self, progress: Callable[[float], bool | None] | None = None) -> PyramidRecord:
+        """Return the record with the errors of every level computed.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called with a fraction in [0, 1]; returning False stops with `Cancelled`.
+        """
         unit = self.frame.z_scale
         levels = (
             level._replace(
                 rmse_surface=level.rmse_surface / unit,
                 max_error_surface=level.max_error_surface / unit,
             )
-            for level in level_errors(self.pyramid)
+            for level in level_errors(self.pyramid, progress)
         )
         return replace(self, errors=tuple(levels))
 

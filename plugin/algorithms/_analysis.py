@@ -78,8 +78,9 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
             **self.more_options(parameters, context, terrain),
         )
         feedback.setProgressText(self.tr("Measuring the errors of every level"))
-        record = terrain.record(pyramid).with_errors()
+        record = terrain.record(pyramid)
         require_running(feedback)
+        record = record.with_errors(progress(feedback, 0.55, 0.75))
         pyramids.log_levels(record, feedback)
         feedback.setProgressText(self.tr("Writing the pyramid"))
         pyramids.save(record, output, feedback, 0.75, 0.95)

@@ -242,7 +242,7 @@ class FilterLevels(PyramidAlgorithm):
         finest = record.pyramid.synthesise()
         path = self.parameterAsFileOutput(parameters, "OUTPUT", context)
         if path:
-            record = record.with_errors()
+            record = record.with_errors(progress(feedback, 0.7, 0.75))
             pyramids.save(record, path, feedback, 0.75, 0.85)
             results["OUTPUT"] = path
         results.update(write_restored(self, parameters, context, record, finest, feedback))

@@ -97,7 +97,8 @@ class QualityReport(PyramidAlgorithm):
             record, self._levels(parameters, context), progress(feedback, 0.1, 0.95)
         )
         texts = {"OUTPUT": page, "FIGURES": json.dumps(numbers, indent=1, allow_nan=False)}
-        results = figures(record if record.errors else record.with_errors())
+        measured = record if record.errors else record.with_errors(progress(feedback, 0.95, 1.0))
+        results = figures(measured)
         for name, text in texts.items():
             path = self.parameterAsFileOutput(parameters, name, context)
             if not path:

@@ -162,7 +162,8 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
         n_figures = len(results)
         path = self.parameterAsFileOutput(parameters, "OUTPUT", context)
         if path:
-            pyramids.save(record.with_errors(), path, feedback, 0.75, 0.9)
+            measured = record.with_errors(progress(feedback, 0.7, 0.75))
+            pyramids.save(measured, path, feedback, 0.75, 0.9)
             results["OUTPUT"] = path
         if parameters.get("TIN"):
             results["TIN"] = tin_output.write_tin(
