@@ -40,7 +40,7 @@ LEAST_WEIGHT = 1e-9
 def analyse(
     mesh: TriangleMesh,
     levels: int | None = None,
-    partition: str = "surface",
+    partition: str | None = None,
     prediction: str | None = None,
     update: str | None = None,
     signal: str = "z",
@@ -64,9 +64,11 @@ def analyse(
         A manifold surface, with or without outline and holes.
     levels : int, optional
         The most levels to build. By default 12, or, with another stop rule, as many as it takes.
-    partition : {"surface", "quadric", "colouring", "random"}
+    partition : {"surface", "quadric", "colouring", "random"}, optional
         Which vertices go: those that raise the vertical errors at all input vertices least; by
-        the paper's cost; or regardless of any, in the order of their index or a random one.
+        the paper's cost; or regardless of any, in the order of their index or a random one. By
+        default ``"surface"``; with a prediction of the paper or ``signal="xyz"``, the paper's
+        ``"quadric"``.
     prediction : str, optional
         How an odd vertex is estimated from its neighbours: ``"uniform"``, ``"cotangent"``,
         ``"geometric"``, ``"nnls"``, ``"least_squares"``, ``"barycentric"`` or ``"plane"``; by

@@ -71,7 +71,7 @@ def resolve_options(
     *,
     n_attributes: int,
     levels: int | None,
-    partition: str,
+    partition: str | None,
     prediction: str | None,
     update: str | None,
     signal: str,
@@ -116,6 +116,9 @@ def resolve_options(
         removal_fraction = REMOVAL_FRACTION
     if not 0 < removal_fraction <= 1:
         raise OptionError(f"removal_fraction is {removal_fraction}; give more than 0, at most 1.")
+    if partition is None:
+        is_papers = prediction not in (None, "barycentric", "BL") or signal == "xyz"
+        partition = "quadric" if is_papers else "surface"
     is_surface = partition == "surface"
     if prediction is None:
         prediction = "barycentric" if is_surface else "geometric"

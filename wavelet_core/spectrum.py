@@ -313,7 +313,7 @@ def level_spacings(pyramid: Pyramid) -> FloatArray:
     --------
     >>> from wavelet_core import analyse, synthetic
     >>> from wavelet_core.spectrum import level_spacings
-    >>> spacings = level_spacings(analyse(synthetic.hills(20, 30, cell=10.0), levels=6))
+    >>> spacings = level_spacings(analyse(synthetic.hills(20, 30, cell=10.0), levels=6, partition="quadric"))
     >>> float(spacings[-1]), bool(spacings[0] > 15)
     (10.0, True)
     """

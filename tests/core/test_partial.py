@@ -49,7 +49,7 @@ def test_the_whole_step_taken_in_part_is_the_coarser_level(update: str, locked: 
     np.testing.assert_array_equal(whole.mesh.faces, coarser.faces)
 
 
-@pytest.mark.parametrize("partition", ["quadric", "colouring"])
+@pytest.mark.parametrize("partition", ["surface", "quadric", "colouring"])
 def test_every_size_between_is_a_valid_tin_of_that_size(partition: str) -> None:
     mesh = synthetic.scattered(300, seed=5, n_attributes=1)
     pyramid = analyse(mesh, levels=3, partition=partition)
@@ -62,7 +62,7 @@ def test_every_size_between_is_a_valid_tin_of_that_size(partition: str) -> None:
 
 
 def test_the_smallest_details_go_first() -> None:
-    pyramid = analyse(hills(), levels=1)
+    pyramid = analyse(hills(), levels=1, partition="quadric")
     magnitude = pyramid.detail(0).magnitude
     found = mesh_of_size(pyramid, pyramid.n_vertices(1) - 10)
     gone = np.setdiff1d(pyramid.vertex_ids(1), found.vertex_ids)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._jit import njit
-from .half_edges import MAX_RING, after, before
+from .half_edges import MAX_RING, before
 
 
 class Surface(NamedTuple):
