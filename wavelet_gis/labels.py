@@ -14,7 +14,8 @@ from wavelet_core.errors import OptionError
 from wavelet_core.spectrum import level_spacings
 from wavelet_gis.classify import NOT_KNOWN
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.points import PointCloud, PointSource
+from wavelet_gis.point_source import PointSource
+from wavelet_gis.points import PointCloud
 from wavelet_gis.record import PyramidRecord
 
 __all__ = ["cloud_with_classes", "labels_from_las", "labels_from_layer"]

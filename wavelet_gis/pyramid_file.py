@@ -38,7 +38,7 @@ from wavelet_gis.geopackage import (
     register_attributes_table,
     table_names,
 )
-from wavelet_gis.points import PointSource
+from wavelet_gis.point_source import PointSource
 from wavelet_gis.record import MeshSource, PyramidRecord, Source
 
 __all__ = ["FORMAT_VERSION", "read_pyramid", "read_summary", "write_pyramid"]

@@ -12,7 +12,8 @@ from wavelet_core import Pyramid, TriangleMesh
 from wavelet_core.metrics import LevelErrors, level_errors
 from wavelet_gis.crs import CoordinateSystem, LocalFrame
 from wavelet_gis.dem import Dem, RasterSource
-from wavelet_gis.points import PointCloud, PointSource
+from wavelet_gis.point_source import PointSource
+from wavelet_gis.points import PointCloud
 
 __all__ = ["MeshSource", "PyramidRecord", "Source"]
 

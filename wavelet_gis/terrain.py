@@ -12,7 +12,8 @@ from wavelet_core import MeshError, Pyramid, TriangleMesh
 from wavelet_gis.crs import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
 from wavelet_gis.dem import Dem, RasterSource, dem_mesh, grid_bounds
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
-from wavelet_gis.points import PointCloud, PointSource, cloud_bounds, cloud_mesh
+from wavelet_gis.point_source import PointSource, cloud_mesh
+from wavelet_gis.points import PointCloud, cloud_bounds
 from wavelet_gis.record import PyramidRecord
 
 __all__ = ["CLOUD_SUFFIXES", "Terrain", "open_terrain", "terrain_of_cloud", "terrain_of_dem"]

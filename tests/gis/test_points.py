@@ -7,7 +7,8 @@ from wavelet_core import TriangleMesh, analyse
 from wavelet_core.errors import MeshError, PyramidError
 from wavelet_gis.crs import LocalFrame
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.points import PointAttribute, PointCloud, PointSource, cloud_bounds, cloud_mesh
+from wavelet_gis.point_source import PointSource, cloud_mesh
+from wavelet_gis.points import PointAttribute, PointCloud, cloud_bounds
 
 
 def cloud_of(integers, *attributes, scales=(0.01, 0.01, 0.01)):

@@ -139,6 +139,7 @@ LIGHT = [
     "crs",
     "dem",
     "points",
+    "point_source",
     "ledger",
     "array_codec",
     "geopackage",
