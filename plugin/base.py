@@ -15,6 +15,7 @@ from . import dependencies
 from .packages import install_finder
 from .translation import tr
 from .warning_log import shown_in
+from .wording import for_dialog
 
 ADVANCED = QgsProcessingParameterDefinition.Flag.FlagAdvanced
 
@@ -125,7 +126,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
             feedback.pushInfo(self.tr("Cancelled; nothing was written."))
             return {}
         except WaveletError as error:
-            raise QgsProcessingException(_sentence(error)) from error
+            raise QgsProcessingException(for_dialog(error)) from error
         except MemoryError as error:
             raise QgsProcessingException(
                 self.tr(
@@ -137,8 +138,3 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
     def work(self, parameters, context, feedback):
         """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""
         raise AssertionError(f"{self.name()} does nothing")
-
-
-def _sentence(error):
-    text = str(error)
-    return text[:1].upper() + text[1:]

@@ -6,6 +6,8 @@ import threading
 import warnings
 from contextlib import contextmanager
 
+from .wording import for_dialog
+
 _feedbacks = threading.local()
 _show_before = None
 
@@ -54,7 +56,6 @@ def _show(message, category, filename, lineno, file=None, line=None):
     if feedback is not None and issubclass(category, SlowFallbackWarning):
         return  # told already, with the remedy for this platform
     if feedback is not None and issubclass(category, TerrainWarning):
-        text = str(message)
-        feedback.pushWarning(text[:1].upper() + text[1:])
+        feedback.pushWarning(for_dialog(message))
     elif _show_before is not None:
         _show_before(message, category, filename, lineno, file, line)

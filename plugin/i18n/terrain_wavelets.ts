@@ -1433,5 +1433,25 @@
     <source>{}: the triangles have no Z, so they hold no elevations.</source>
     <translation type="unfinished"></translation>
   </message>
+  <message>
+    <location filename="../../plugin/wording.py"/>
+    <source>another</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/wording.py"/>
+    <source>assign {} in the layer's properties</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/wording.py"/>
+    <source>one</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/wording.py"/>
+    <source>the right one</source>
+    <translation type="unfinished"></translation>
+  </message>
 </context>
 </TS>

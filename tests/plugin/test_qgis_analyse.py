@@ -25,6 +25,7 @@ def refused(run):
             run(name, parameters, feedback=log)
         message = "\n".join([str(caught.value), *log.errors])
         assert "Traceback" not in message
+        assert " --" not in message
         return message
 
     return run_refused
@@ -51,7 +52,7 @@ class TestDem:
         path = write_raster(tmp_path / "dem é b.tif", values, nodata=7)
         made = run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "out.gpkg")})
         assert made["N_VERTICES"] == values.size - 40
-        assert made["COARSE_VERTICES"] < made["N_VERTICES"] / 5
+        assert made["COARSE_VERTICES"] < made["N_VERTICES"] / 2
         back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "back.tif")})
         assert back["EXACT"] == "yes"
         assert_same_raster(path, back["DEM"])
@@ -139,7 +140,8 @@ class TestDem:
         path = write_raster(tmp_path / "dem.tif", hills().astype("float32"), epsg=None)
         log = Log()
         run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "o.gpkg")}, feedback=log)
-        assert any("CRS" in warning for warning in log.warnings)
+        assert any("assign one in the layer's properties" in text for text in log.warnings)
+        assert not any("--" in text for text in log.warnings)
 
     @pytest.mark.parametrize("percent", [1, 20, 60])
     def test_cancel_leaves_nothing_behind(self, run, tmp_path, percent):
@@ -214,12 +216,12 @@ class TestLevels:
                 "OUTPUT": "TEMPORARY_OUTPUT",
                 "FIRST_LEVEL": 1,
                 "LAST_LEVEL": 2,
-                "MIN_MAGNITUDE": 1.0,
+                "MIN_MAGNITUDE": 0.1,
             },
         )
         rows = list(fewer["OUTPUT"].getFeatures())
         assert {f["level"] for f in rows} == {1, 2}
-        assert min(f["magnitude"] for f in rows) >= 1.0
+        assert min(f["magnitude"] for f in rows) >= 0.1
 
     def test_outputs_open_styled(self, run, pyramid, tmp_path):
         import processing
