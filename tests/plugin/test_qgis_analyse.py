@@ -216,12 +216,12 @@ class TestLevels:
                 "OUTPUT": "TEMPORARY_OUTPUT",
                 "FIRST_LEVEL": 1,
                 "LAST_LEVEL": 2,
-                "MIN_MAGNITUDE": 0.1,
+                "MIN_MAGNITUDE": 0.01,
             },
         )
         rows = list(fewer["OUTPUT"].getFeatures())
         assert {f["level"] for f in rows} == {1, 2}
-        assert min(f["magnitude"] for f in rows) >= 0.1
+        assert min(f["magnitude"] for f in rows) >= 0.01
 
     def test_outputs_open_styled(self, run, pyramid, tmp_path):
         import processing
