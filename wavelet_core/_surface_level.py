@@ -35,10 +35,7 @@ from ._kernels.surface_points import (
 from ._validate import FloatArray, frozen
 from .lifting import Step
 
-#: A level takes no vertex that costs more than COST_RATIO times what the cheapest part
-#: (1 / CHEAPEST_SHARE) of the vertices it may take cost: cheap terrain goes first, whatever its
-#: share.
-COST_RATIO = 8.0
+#: Part of the vertices that a level may take, by whose dearest the others' costs are judged.
 CHEAPEST_SHARE = 16
 #: Errors below this part of the range of z are rounding.
 ROUNDING = 1e-9
@@ -156,8 +153,14 @@ class SurfaceLevel:
             tolerance**2, cutoff, self._cost, self._target, self._is_stale,
         )  # fmt: skip
 
-    def candidates(self, fraction: float, cutoff: float) -> NDArray[np.int32]:
-        """Return the slots of the vertices that may be odd: the cheapest ``fraction`` at most."""
+    def candidates(
+        self, fraction: float, cutoff: float, cost_ratio: float = np.inf
+    ) -> NDArray[np.int32]:
+        """Return the slots of the vertices that may be odd: the cheapest ``fraction`` at most.
+
+        None of them costs more than ``cost_ratio`` times what the cheapest part of those
+        (1 / CHEAPEST_SHARE) does.
+        """
         known = (
             self._vertex_lives & ~self._is_stale & (self._cost <= cutoff) & np.isfinite(self._cost)
         )
@@ -169,7 +172,9 @@ class SurfaceLevel:
             return slots
         places = [n_cheapest - 1, min(n_most, len(slots)) - 1]
         cheap, dear = np.partition(cost, places)[places]
-        return slots[cost <= min(dear, max(COST_RATIO * cheap, self._noise))]
+        if cost_ratio < np.inf:
+            dear = min(dear, max(cost_ratio * cheap, self._noise))
+        return slots[cost <= dear]
 
     def independent(
         self, slots: NDArray[np.int32], max_odd: int, budget: float

@@ -16,11 +16,14 @@ from numpy.typing import NDArray
 from ._surface_level import SurfaceLevel
 from ._validate import FloatArray, frozen
 from .lifting import Step
+from .options import REMOVAL_FRACTION
 
 #: Norms by which a removal is judged.
 NORMS = ("rms", "max")
-#: Share of the vertices that may be odd at one level, at most.
-REMOVAL_FRACTION = 0.25
+#: Where a size or a tolerance says when to stop, a level takes no vertex that costs more than this
+#: many times what the cheapest ones do: cheap terrain goes first, whatever its share. Where only
+#: the number of levels is given, each level takes its full share.
+COST_RATIO = 8.0
 #: Costs beyond this multiple of the last level's dearest are not worked out.
 FORESIGHT = 4.0
 #: With an update and a tolerance, how often a level is tried with fewer vertices.
@@ -47,6 +50,12 @@ class SurfaceRules(NamedTuple):
     target_vertices: int = 0
     max_error: float = np.inf
     max_rms: float = np.inf
+
+    @property
+    def cost_ratio(self) -> float:
+        """How much dearer than the cheapest the vertices of one level may be."""
+        has_aim = self.target_vertices > 0 or min(self.max_error, self.max_rms) < np.inf
+        return COST_RATIO if has_aim else np.inf
 
     @property
     def needs_proof(self) -> bool:
@@ -146,8 +155,8 @@ def _take_step(
 def _candidates(level: SurfaceLevel, rules: SurfaceRules, cutoff: float) -> NDArray[np.int32]:
     """Return the slots that may go; dearer ones are looked at where few others are left."""
     level.rank(rules.norm, rules.max_error, cutoff)
-    slots = level.candidates(rules.removal_fraction, cutoff)
+    slots = level.candidates(rules.removal_fraction, cutoff, rules.cost_ratio)
     if cutoff < np.inf and len(slots) < LEAST_PROGRESS * level.n_vertices:
         level.rank(rules.norm, rules.max_error, np.inf)
-        slots = level.candidates(rules.removal_fraction, np.inf)
+        slots = level.candidates(rules.removal_fraction, np.inf, rules.cost_ratio)
     return slots

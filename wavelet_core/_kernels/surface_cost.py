@@ -116,6 +116,11 @@ def collapse_costs(
         size, n_sides = walk_ring(v, mesh, ring, spoke)
         if size < 3:
             continue
+        is_enclosed = True  # no neighbour may take a share of the detail
+        for k in range(size):
+            is_enclosed = is_enclosed and locked[ring[k]]
+        if is_enclosed:
+            continue
         vx, vy = surface.x[v], surface.y[v]
         for k in range(size):
             rx[k], ry[k] = surface.x[ring[k]] - vx, surface.y[ring[k]] - vy
