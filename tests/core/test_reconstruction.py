@@ -92,6 +92,36 @@ def test_a_larger_grid(signal, hole_share):
     helpers.assert_pyramid_is_consistent(pyramid, mesh)
 
 
+@ALL_PAIRS
+@settings(max_examples=15)
+@given(
+    mesh=meshes(),
+    levels=st.integers(1, 24),
+    norm=st.sampled_from(["rms", "max"]),
+    removal_fraction=st.sampled_from([0.1, 0.25, 1.0]),
+    locked_share=st.sampled_from([0.0, 0.0, 0.3]),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_the_surface_guided_partition(
+    prediction, update, mesh, levels, norm, removal_fraction, locked_share, seed
+):
+    locked = np.random.default_rng(seed).random(mesh.n_vertices) < locked_share
+    pyramid = analyse(
+        mesh,
+        levels=levels,
+        partition="surface",
+        prediction=prediction,
+        update=update,
+        norm=norm,
+        removal_fraction=removal_fraction,
+        locked=locked,
+    )
+    helpers.assert_pyramid_is_consistent(pyramid, mesh)
+    np.testing.assert_array_equal(
+        pyramid.mesh(0).vertices[locked[pyramid.vertex_ids(0)]], mesh.vertices[locked]
+    )
+
+
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("prediction", ["uniform", "geometric", "nnls", "cotangent"])
 def test_a_closed_surface(prediction, seed):
