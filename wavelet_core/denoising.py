@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import lsq_linear
 
 from ._validate import FloatArray
 from .analysis import EXPECTED_KEPT, analyse
@@ -25,6 +26,9 @@ from .transform import LinearStep, Transform
 ROUNDS = 4
 ENERGY_SCALES = (1.3, 2.0)
 N_ELEMENTS = 1 + len(ENERGY_SCALES)
+#: Local energies at which the change of the details is bounded: none, noise and a half, all.
+PROBED_ENERGIES = (0.0, 1.6, np.inf)
+LEAST_CHANGE, MOST_CHANGE = -1.0, 0.1
 #: Levels that share their weights: single ones gain 0.3 % and take twice as long.
 LEVELS_PER_BAND = 2
 #: Vertices on which the weights are fitted; more do not change them.
@@ -96,7 +100,8 @@ def denoise(
     of the noise that reaches each coefficient (:func:`wavelet_core.coefficients.noise_gains`).
     The result is the input plus the weighted sum of these columns F whose expected squared
     error, by Stein's unbiased estimate, is least: :math:`M b = -\sigma^2 \operatorname{div} F`
-    with :math:`M = F^T F`. No clean surface and no threshold is needed, and noise of zero gives
+    with :math:`M = F^T F`, within bounds that neither turn a detail over nor boost it by more than
+    a tenth. No clean surface and no threshold is needed, and noise of zero gives
     back the input. The estimate holds for white normal noise; M is taken from the average of all
     pyramids, which is what makes the weights fit the average rather than a single one.
 
@@ -213,13 +218,24 @@ class _WeightedSum:
             self._divergence[where] += share * slope / step_size
 
     def solve(self, finish: bool) -> None:
-        """Find the weights; with ``finish`` the fitted columns cover all vertices: sum them."""
+        """Find the weights; with ``finish`` the fitted columns cover all vertices: sum them.
+
+        A level's details are multiplied by 1 + b_0 + b_1 exp(...) + ..., a function of their
+        local energy. Its values at as many energies are the unknowns here, so that they can be
+        kept between dropping and slightly boosting: a sigma that is far too large would
+        otherwise turn details over.
+        """
         share = len(self._columns) / len(self._values)
-        moments = self._columns.T @ self._columns
+        to_weights = np.kron(
+            np.eye(len(self._weights) // N_ELEMENTS), np.linalg.inv(_multipliers(PROBED_ENERGIES))
+        )
+        moments = to_weights.T @ (self._columns.T @ self._columns) @ to_weights
+        pull = -(self._sigma**2) * share * (to_weights.T @ self._divergence)
         size = np.sqrt(np.where(np.diag(moments) > 0, np.diag(moments), 1.0))
-        scaled = moments / np.outer(size, size) + RIDGE * np.eye(len(size))
-        pull = -(self._sigma**2) * share * self._divergence
-        self._weights = np.linalg.solve(scaled, pull / size) / size
+        root = np.linalg.cholesky(moments / np.outer(size, size) + RIDGE * np.eye(len(size)))
+        target = np.linalg.solve(root, pull / size)
+        bounds = (LEAST_CHANGE * size, MOST_CHANGE * size)
+        self._weights = to_weights @ (lsq_linear(root.T, target, bounds, method="bvls").x / size)
         if finish:
             self.result += self._columns @ self._weights
 
@@ -239,6 +255,12 @@ def _damped(step: LinearStep, details: FloatArray, noise: FloatArray) -> FloatAr
     energy = local_energy(step, (details / noise[:, None]) ** 2, ROUNDS)
     damped = [details * np.exp(-((energy / scale) ** 2)) for scale in ENERGY_SCALES]
     return np.stack([details, *damped], axis=2)
+
+
+def _multipliers(energies: Sequence[float]) -> FloatArray:
+    """Return what each element contributes at some local energies, ``(n, N_ELEMENTS)``."""
+    ratio = np.divide.outer(np.asarray(energies), np.asarray(ENERGY_SCALES))
+    return np.column_stack([np.ones(len(ratio)), np.exp(-(ratio**2))])
 
 
 def _block(levels_above: int) -> slice:

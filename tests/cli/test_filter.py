@@ -56,7 +56,9 @@ def test_a_pyramid_can_be_filtered_again_and_tells_its_history(done, pyramid, tm
     assert not ours.source.is_exact
 
 
-def test_a_band_by_level_and_by_size_on_the_ground(done, pyramid, tmp_path):
+def test_a_band_by_level_and_by_size_on_the_ground(done, tif, tmp_path):
+    pyramid = tmp_path / "random.gpkg"  # its levels are bands of sizes
+    done("analyse", tif, pyramid, "--levels", "4", "--partition", "random", "--quiet")
     by_level, by_size = tmp_path / "level.tif", tmp_path / "size.tif"
     figures = done("filter", pyramid, by_level, "--band", "1:2", "--no-coarse", "--json").figures
     assert [level for level, gain in figures["gains"].items() if gain] == ["1", "2"]
@@ -70,7 +72,7 @@ def test_a_band_by_level_and_by_size_on_the_ground(done, pyramid, tmp_path):
 def test_metres_are_metres_where_the_crs_counts_feet(done, tmp_path):
     feet = write_tif(tmp_path / "feet.tif", hills().astype("f4"), crs="EPSG:2226")
     file = tmp_path / "feet.gpkg"
-    done("analyse", feet, file, "--levels", "3", "--quiet")
+    done("analyse", feet, file, "--levels", "3", "--partition", "random", "--quiet")
     spacing = level_spacings(read_pyramid(file).pyramid)[2] * 0.3048006096
     band = f"{spacing * 0.999}:{spacing * 1.001}"
     figures = done("filter", file, tmp_path / "out.tif", "--band-metres", band, "--json").figures

@@ -21,7 +21,7 @@ def pyramid():
 @pytest.mark.parametrize("update", ["minimum_norm", "martinez_ortega", "one_ring_mean", "none"])
 def test_unit_gains_are_the_identity_to_the_bit(signal, update):
     pyramid = analyse(random_delaunay(200, 1, seed=1), levels=4, signal=signal, update=update)
-    same = pyramid.with_gains({level: 1.0 for level in range(pyramid.n_levels)})
+    same = pyramid.with_gains(dict.fromkeys(range(pyramid.n_levels), 1.0))
     assert same.coarse.tobytes() == pyramid.coarse.tobytes()
     for ours, theirs in zip(same.steps, pyramid.steps, strict=True):
         assert ours.details.tobytes() == theirs.details.tobytes()
@@ -41,7 +41,7 @@ def test_gains_compose(pyramid):
 @pytest.mark.parametrize("level", [0, 2, 4])
 def test_zero_gains_above_a_level_interpolate_its_tin_up(update, level):
     pyramid = analyse(random_delaunay(300, 1, seed=5), levels=5, update=update)
-    gains = {k: 0.0 for k in range(level, pyramid.n_levels)}
+    gains = dict.fromkeys(range(level, pyramid.n_levels), 0.0)
     expected = columns_of(pyramid.mesh(level), pyramid.channels)
     for k in range(level, pyramid.n_levels):
         prediction, _, odd, even = pyramid.filters(k)
@@ -64,7 +64,7 @@ def test_bands_add_up_to_the_whole(pyramid):
         pyramid.with_gains(coefficients.band_gains(pyramid, levels=(k, k)), coarse=0.0)
         for k in range(pyramid.n_levels)
     ]
-    coarse = pyramid.with_gains({k: 0.0 for k in range(pyramid.n_levels)})
+    coarse = pyramid.with_gains(dict.fromkeys(range(pyramid.n_levels), 0.0))
     total = sum(columns_of(p.synthesise(), pyramid.channels) for p in [*bands, coarse])
     whole = columns_of(pyramid.synthesise(), pyramid.channels)
     np.testing.assert_allclose(total, whole, rtol=0, atol=1e-11 * np.abs(whole).max())

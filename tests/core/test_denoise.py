@@ -131,3 +131,12 @@ def test_cancelling_stops_it():
 def test_what_does_not_fit_is_refused(options, words):
     with pytest.raises(OptionError, match=words):
         denoise(mesh_of(terrain(10)), **options)
+
+
+def test_a_sigma_far_too_large_smooths_and_never_turns_details_over():
+    truth = terrain(40)
+    noisy = mesh_of(truth + np.random.default_rng(0).normal(0, 0.1, truth.shape))
+    smooth = denoise(noisy, 2.0, n_pyramids=2).vertices[:, 2]
+    assert smooth.min() > truth.min() - 0.5
+    assert smooth.max() < truth.max() + 0.5
+    assert np.std(smooth - truth.ravel()) < 0.6 * np.std(truth)
