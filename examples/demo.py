@@ -27,6 +27,10 @@ from wavelet_gis.pyramid_file import read_pyramid
 from wavelet_gis.raster import read_dem, write_dem
 from wavelet_gis.rasterise import rasterise
 
+#: Vertices of the coarsest level; shares of the input's vertices that the picture shows beside it.
+TARGET_VERTICES = 2000
+SHARES_SHOWN = (0.25, 0.06)
+
 LAND = LinearSegmentedColormap.from_list(
     "land", ["#5d7f6a", "#93a77c", "#cfc79a", "#d9bd8e", "#b98d67", "#8f6a55", "#efe9e2"]
 )
@@ -93,7 +97,7 @@ def draw(path, dem, record, meshes):
     """Draw the input and three levels, and where how much detail goes between them."""
     pyramid, frame = record.pyramid, record.frame
     finest = pyramid.n_levels
-    shown = [finest, *(round(finest * share) for share in (2 / 3, 1 / 3, 0))]
+    shown = [finest, *levels_near(pyramid, SHARES_SHOWN), 0]
     n_rows, n_columns = dem.geometry.shape
     a, _, west, _, e, north = dem.geometry.transform
     extent = (west, west + a * n_columns, north + e * n_rows, north)
@@ -160,7 +164,7 @@ def draw(path, dem, record, meshes):
     bar.tick_params(labelsize=8.5)
     bar.yaxis.set_major_formatter(mpl.ticker.FormatStrFormatter("%g"))
     bar.yaxis.set_minor_formatter(mpl.ticker.NullFormatter())
-    bar.set_yticks([2, 5, 10, 20, 50])
+    bar.set_yticks([tick for tick in (1, 2, 5, 10, 20, 50) if norm.vmin <= tick <= norm.vmax])
     figure.savefig(path, dpi=130)
     plt.close(figure)
 
@@ -185,6 +189,13 @@ def strength(group, frame, geometry):
     return np.sqrt(sums / np.maximum(counts, 1e-9))
 
 
+def levels_near(pyramid, shares):
+    """Return the levels whose share of the input's vertices is nearest to each of ``shares``."""
+    counts = np.array([pyramid.n_vertices(level) for level in range(pyramid.n_levels)])
+    wanted = np.log(np.array(shares) * pyramid.n_vertices(pyramid.n_levels))
+    return [int(np.argmin(np.abs(np.log(counts) - count))) for count in wanted]
+
+
 def label(axes, name, note, extent, aspect):
     """Give a map its name and a note, and take its ticks away."""
     axes.set(xlim=extent[:2], ylim=extent[2:], xticks=[], yticks=[])
@@ -198,13 +209,18 @@ def signature(axes, record):
     pyramid = record.pyramid
     mesh = pyramid.mesh(pyramid.n_levels)
     area = np.prod(np.ptp(mesh.vertices[:, :2], axis=0))
-    levels = np.arange(pyramid.n_levels)[::-1]
-    spacing = np.array([math.sqrt(area / pyramid.n_vertices(level)) for level in levels])
-    rms = np.array([np.sqrt(np.mean(d.magnitude**2)) for _, d in pyramid.details()])[::-1]
+    counts = np.array([pyramid.n_vertices(level) for level in range(pyramid.n_levels + 1)])
+    # Steps that take next to nothing (what lies on a plane already, the rest to the target) say
+    # little about their scale.
+    levels = np.flatnonzero(counts[:-1] < 0.95 * counts[1:])[::-1]
+    spacing = np.sqrt(area / counts[levels])
+    layers = dict(pyramid.details())
+    rms = np.array([np.sqrt(np.mean(layers[level].magnitude ** 2)) for level in levels])
     colours = DETAIL(0.3 + 0.65 * np.arange(len(levels)) / len(levels))
     axes.plot(spacing, rms, color="#c9c4bb", linewidth=1.5, zorder=1)
     axes.scatter(spacing, rms, c=colours, s=52, zorder=2, edgecolors="white", linewidths=0.8)
-    for level, x, y in zip(levels, spacing, rms, strict=True):
+    labelled = range(len(levels) - 1, -1, -math.ceil(len(levels) / 10))
+    for level, x, y in ((levels[k], spacing[k], rms[k]) for k in labelled):
         axes.annotate(str(level), (x, y), (0, 8), textcoords="offset points", ha="center",
                       fontsize=8.5, color="#5c5954")  # fmt: skip
     axes.set(xscale="log", ylim=(0, 1.18 * rms.max()), xlim=(0.85 * spacing[0], 1.2 * spacing[-1]))
@@ -214,7 +230,8 @@ def signature(axes, record):
         fontsize=10, color="#5c5954",
     )  # fmt: skip
     axes.set_xlabel("mean spacing of the vertices (m)", fontsize=9.5)
-    axes.set_xticks([100, 200, 400, 800], ["100", "200", "400", "800"])
+    ticks = [tick for tick in (100, 200, 400, 800) if spacing[0] <= tick <= spacing[-1]]
+    axes.set_xticks(ticks, [str(tick) for tick in ticks])
     axes.minorticks_off()
     axes.tick_params(labelsize=8.5, length=3)
     axes.spines[["top", "right"]].set_visible(False)
@@ -231,7 +248,8 @@ def main(folder):
     print(f"{raster}: SRTM elevation of the Jacksboro fault (matplotlib's sample data), EPSG:4326")
 
     start = perf_counter()
-    failed = terrain_wavelets(["analyse", str(raster), str(pyramid_file), "--overwrite", "--quiet"])
+    options = ["--target-vertices", str(TARGET_VERTICES), "--overwrite", "--quiet"]
+    failed = terrain_wavelets(["analyse", str(raster), str(pyramid_file), *options])
     if failed:
         return failed
     seconds = perf_counter() - start
