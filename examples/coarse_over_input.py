@@ -37,7 +37,7 @@ def draw(dem: str, picture: str, n_vertices: int) -> None:
         if code:
             raise SystemExit(code)
         frame = pyogrio.raw.read(tin, layer=str(pyogrio.list_layers(tin)[0, 0]))
-    triangles = np.array([shapely.get_coordinates(g, True)[:3] for g in shapely.from_wkb(frame[2])])
+    triangles = np.array([shapely.get_coordinates(g, include_z=True)[:3] for g in shapely.from_wkb(frame[2])])
     with rasterio.open(dem) as dataset:
         z = dataset.read(1).astype(float)
         bounds, is_geographic = dataset.bounds, dataset.crs.is_geographic
@@ -56,7 +56,7 @@ def draw(dem: str, picture: str, n_vertices: int) -> None:
     normals *= np.sign(normals[:, 2:])
     shade = np.clip(normals @ SUN.direction, 0, 1)
 
-    figure, axes = pyplot.subplots(1, 3, figsize=(13, 5.6), layout="constrained")
+    figure, axes = pyplot.subplots(1, 3, figsize=(13, 4.7), layout="constrained")
     titles = ("Input", "Coarse TIN, over the input", "Coarse TIN, its own hillshade")
     for column, (axis, title) in enumerate(zip(axes, titles, strict=True)):
         axis.imshow(
