@@ -313,7 +313,8 @@ def level_spacings(pyramid: Pyramid) -> FloatArray:
     --------
     >>> from wavelet_core import analyse, synthetic
     >>> from wavelet_core.spectrum import level_spacings
-    >>> spacings = level_spacings(analyse(synthetic.hills(20, 30, cell=10.0), levels=6, partition="quadric"))
+    >>> pyramid = analyse(synthetic.hills(20, 30, cell=10.0), levels=6, partition="quadric")
+    >>> spacings = level_spacings(pyramid)
     >>> float(spacings[-1]), bool(spacings[0] > 15)
     (10.0, True)
     """
