@@ -100,5 +100,5 @@ def draw(mesh: TriangleMesh, pyramid: Any, path: Path) -> None:
     axes[3].set_aspect("equal")
     axes[3].set_axis_off()
     axes[3].set_title("strongest tenth of the details", fontsize=9)
-    figure.savefig(path, dpi=70)
+    figure.savefig(path, dpi=70, bbox_inches="tight")
     plt.close(figure)

@@ -92,7 +92,7 @@ def draw_errors(sample: Sample, designs: dict[str, Any], path: Path) -> None:
         high = min(max(axis.get_ylim()[1] for axis in row), 1e3 * low)
         for axis in row:
             axis.set_ylim(low, high)
-    figure.savefig(path, dpi=70)
+    figure.savefig(path, dpi=70, bbox_inches="tight")
     plt.close(figure)
 
 
@@ -108,7 +108,7 @@ def draw_levels(sample: Sample, path: Path) -> None:
         mesh = meshes[level]
         shade(axis, mesh.vertices, mesh.faces)
         axis.set_title(f"{pyramid.n_levels - level} steps, {mesh.n_vertices:,} vertices")
-    figure.savefig(path, dpi=70)
+    figure.savefig(path, dpi=70, bbox_inches="tight")
     plt.close(figure)
 
 
@@ -131,6 +131,10 @@ def shade(axis: Any, vertices: np.ndarray, faces: np.ndarray) -> None:
         cmap="gray",
         vmin=0,
         vmax=1,
+    )
+    drawn = vertices[np.unique(faces)]
+    axis.set(
+        xlim=(drawn[:, 0].min(), drawn[:, 0].max()), ylim=(drawn[:, 1].min(), drawn[:, 1].max())
     )
     axis.set_aspect("equal")
     axis.set_axis_off()

@@ -77,7 +77,7 @@ def draw(mesh: TriangleMesh, coarse: dict[str, TriangleMesh], path: Path) -> Non
         inside = (np.abs(one.vertices[:, :2] - [300, -300]) <= 150).all(axis=1)
         shade(axis, one.vertices, one.faces[inside[one.faces].all(axis=1)])
         axis.set_title(f"{name}\n{one.n_faces:,} triangles", fontsize=9)
-    figure.savefig(path, dpi=70)
+    figure.savefig(path, dpi=70, bbox_inches="tight")
     plt.close(figure)
 
 
