@@ -169,15 +169,15 @@ def wavelet97(z, vertices, faces, n):
 
 PEERS: dict[str, Callable] = {
     "ours": ours,
-    "ours, norm max": ours_max,
-    "ours, the paper's": ours_paper,
+    "ours max": ours_max,
+    "ours paper": ours_paper,
     "VTK quadric": vtk,
     "fast-simplification": fast_simplification,
     "pyfqmr": pyfqmr,
     "meshoptimizer": meshoptimizer,
     "pydelatin": pydelatin,
     "pymartini": pymartini,
-    "CDF 9/7, n coefficients": wavelet97,
+    "CDF 9/7 wavelet": wavelet97,
     "regular subsample": subsample,
 }
 
