@@ -53,6 +53,7 @@ inside() {
     unshare --mount sh -euc '
         mount -t proc proc "$ROOT/proc"
         mount --rbind /dev "$ROOT/dev"
+        mount --rbind /sys "$ROOT/sys"
         cp -L /etc/resolv.conf /etc/hosts "$ROOT/etc/" 2>/dev/null || true
         mkdir -p "$ROOT$REPOSITORY"
         mount --bind "$REPOSITORY" "$ROOT$REPOSITORY"
