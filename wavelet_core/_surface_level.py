@@ -10,20 +10,19 @@ from numpy.typing import NDArray
 from ._kernels._jit import run_in_ranges
 from ._kernels.connectivity import fill_stars
 from ._kernels.half_edges import HalfEdges, find_outgoing, find_twins
-from ._kernels.surface_cost import (
+from ._kernels.surface_choice import (
     CANDIDATE,
-    LARGEST,
-    LEAST_SQUARES,
     TAKEN,
     collapse_all,
-    collapse_costs,
     find_cheapest,
     measure_rings,
     record_rings,
     take_cheapest,
 )
+from ._kernels.surface_cost import LARGEST, LEAST_SQUARES, collapse_costs
 from ._kernels.surface_points import (
     FacePoints,
+    Moments,
     Surface,
     copy_points,
     count_points,
@@ -99,16 +98,20 @@ class SurfaceLevel:
         self._key = _scattered(n_vertices)
         self._target = np.full(n_vertices, -1, dtype=np.int32)
         self._is_stale = np.ones(n_vertices, dtype=bool)
+        self._is_new = np.ones(n_vertices, dtype=bool)
         self._has_moved = np.zeros(n_vertices, dtype=bool)
         self._z_changed = np.zeros(n_vertices, dtype=bool)
         self._face_changed = np.zeros(n_faces, dtype=bool)
         self._squared = np.zeros(n_faces)
         self._squared_z = np.zeros(n_faces if n_channels > 1 else 0)
         self._largest_z = np.zeros(n_faces)
-        self._slope = np.zeros((3 * n_faces if with_update else 0, n_channels), np.float32)
-        self._weight = np.zeros(3 * n_faces if with_update else 0, np.float32)
-        self._vertex_slope = np.zeros((n_vertices if with_update else 0, n_channels))
-        self._vertex_weight = np.ones(n_vertices if with_update else 0)
+        n_corners, n_stars = (3 * n_faces, n_vertices) if with_update else (0, 0)
+        self._moments = Moments(
+            np.zeros((n_corners, n_channels), np.float32),
+            np.zeros(n_corners, np.float32),
+            np.zeros((n_stars, n_channels)),
+            np.ones(n_stars),
+        )
         self._with_update = with_update
 
     @property
@@ -148,9 +151,9 @@ class SurfaceLevel:
         todo = todo.astype(np.int32)
         run_in_ranges(
             collapse_costs, len(todo), todo, self._mesh, self._surface, self._points, self._stays,
-            self._locked, self._squared, self._slope, self._weight, self._vertex_slope,
-            self._vertex_weight, self._integrals, LARGEST if norm == "max" else LEAST_SQUARES,
-            tolerance**2, cutoff, self._cost, self._target, self._is_stale,
+            self._locked, self._squared, self._moments, self._integrals,
+            LARGEST if norm == "max" else LEAST_SQUARES, tolerance**2, cutoff, self._cost,
+            self._target, self._is_stale, self._is_new,
         )  # fmt: skip
 
     def candidates(
@@ -288,7 +291,7 @@ class SurfaceLevel:
         n_odd = len(corners)
         row_indptr = np.arange(0, 3 * n_odd + 1, 3, dtype=np.int64)
         columns, row_weights = corners.ravel(), weights.ravel()
-        stuck = np.flatnonzero(self._locked[corners].all(axis=1)) if self._locked.any() else ()
+        stuck = np.flatnonzero(self._locked[corners].all(axis=1))
         if len(stuck) == 0:
             return row_indptr, columns, row_weights
         counts = np.full(n_odd, 3, dtype=np.int64)
@@ -306,15 +309,14 @@ class SurfaceLevel:
         run_in_ranges(
             sum_over_faces, len(self._face_lives), self._mesh, self._face_lives,
             self._face_changed, self._z_changed, self._surface, self._points, self._squared,
-            self._squared_z, self._largest_z, self._slope, self._weight, self._is_stale,
+            self._squared_z, self._largest_z, self._moments, self._is_stale, self._is_new,
             self._has_moved,
         )  # fmt: skip
         self._z_changed[:] = False
         if self._with_update:
             run_in_ranges(
                 sum_over_stars, len(self._ids), self._mesh, self._vertex_lives, self._has_moved,
-                self._surface, self._slope, self._weight, self._vertex_slope,
-                self._vertex_weight, self._is_stale,
+                self._surface, self._moments,
             )  # fmt: skip
 
     # -- keeping the arrays small ----------------------------------------------------------------
@@ -323,8 +325,8 @@ class SurfaceLevel:
         """Leave room for ``n_more`` points behind those in use."""
         if self._n_used + n_more <= len(self._points.x):
             return
-        holders = np.flatnonzero(self._points.count).astype(np.int32)
-        first = _starts(self._points.count[holders])
+        holders = np.flatnonzero(self._points.n_points).astype(np.int32)
+        first = _starts(self._points.n_points[holders])
         capacity = int(first[-1]) + n_more
         capacity += capacity // 2 + self.n_input // 4
         n_channels = self._points.z.shape[1]
@@ -332,7 +334,7 @@ class SurfaceLevel:
         run_in_ranges(copy_points, len(holders), holders, first, self._points, x, y, z)
         start = self._points.start.copy()
         start[holders] = first[:-1]
-        self._points = FacePoints(start, self._points.count, x, y, z)
+        self._points = FacePoints(start, self._points.n_points, x, y, z)
         self._n_used = int(first[-1])
 
     def _pack(self) -> None:
@@ -357,7 +359,7 @@ class SurfaceLevel:
         )
         self._surface = Surface(*(np.ascontiguousarray(a[vertices]) for a in self._surface))
         self._points = self._points._replace(
-            start=self._points.start[faces], count=self._points.count[faces]
+            start=self._points.start[faces], n_points=self._points.n_points[faces]
         )
         self._target = position[self._target[vertices]]
         for name in _OF_VERTICES:
@@ -367,9 +369,12 @@ class SurfaceLevel:
         if len(self._squared_z):
             self._squared_z = self._squared_z[faces]
         if self._with_update:
-            self._slope, self._weight = self._slope[corners], self._weight[corners]
-            self._vertex_slope = self._vertex_slope[vertices]
-            self._vertex_weight = self._vertex_weight[vertices]
+            self._moments = Moments(
+                self._moments.slope[corners],
+                self._moments.weight[corners],
+                self._moments.vertex_slope[vertices],
+                self._moments.vertex_weight[vertices],
+            )
 
     def snapshot(self) -> SurfaceLevel:
         """Return a copy to go back to; points already in place are never overwritten."""
@@ -378,16 +383,17 @@ class SurfaceLevel:
             if isinstance(value, np.ndarray):
                 setattr(twin, name, value.copy())
         twin._mesh = HalfEdges(*(array.copy() for array in self._mesh))
+        twin._moments = copy.deepcopy(self._moments)
         twin._surface = self._surface._replace(z=self._surface.z.copy())
         twin._points = self._points._replace(
-            start=self._points.start.copy(), count=self._points.count.copy()
+            start=self._points.start.copy(), n_points=self._points.n_points.copy()
         )
         return twin
 
 
 _OF_VERTICES = (
     "_ids", "_vertex_lives", "_locked", "_stays", "_integrals", "_cost", "_key", "_is_stale",
-    "_has_moved", "_z_changed",
+    "_is_new", "_has_moved", "_z_changed",
 )  # fmt: skip
 _OF_FACES = ("_face_lives", "_face_changed", "_squared", "_largest_z")
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ._inline import inlined
 from ._jit import njit
 
 NO_INDEX = -1
@@ -77,12 +78,12 @@ def find_outgoing(start, stop, indptr, star, mesh, n_fans):
             n_fans[vertex] = 1 if n_walked == degree and n_open < 2 else 2
 
 
-@njit
+@inlined
 def before(half_edge):
     return half_edge + 2 if half_edge % 3 == 0 else half_edge - 1
 
 
-@njit
+@inlined
 def after(half_edge):
     return half_edge - 2 if half_edge % 3 == 2 else half_edge + 1
 
@@ -90,10 +91,9 @@ def after(half_edge):
 # ring, spoke (MAX_RING,) int32, filled: the neighbours of v, counter-clockwise, and the
 # half-edges from v to them. Returns (size of the ring, number of faces): equal inside, one more
 # neighbour than faces on the outline, (0, 0) if there are too many.
-@njit
-def walk_ring(v, mesh, ring, spoke):
-    origin, twin = mesh.origin, mesh.twin
-    opening = mesh.outgoing[v]
+@inlined
+def walk_ring(v, origin, twin, outgoing, ring, spoke):
+    opening = outgoing[v]
     half_edge = opening
     size = 0
     while size < MAX_RING - 1:

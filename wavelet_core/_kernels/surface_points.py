@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ._inline import inlined
 from ._jit import njit
 from .half_edges import MAX_RING, before
 
@@ -23,15 +24,28 @@ class Surface(NamedTuple):
     measured: NDArray[np.float64]
 
 
-class FacePoints(NamedTuple):
-    """The removed vertices, face by face: those of face f are ``[start[f]:start[f] + count[f]]``.
+class Moments(NamedTuple):
+    """Sums of error times hat function, and of how stiff the sum of squares is to a shift.
 
-    start, count : (n_faces,) int32
+    slope : (3 n_faces, c) float32, weight : (3 n_faces,) float32, of the corners of the faces
+    vertex_slope : (n, c) float64, vertex_weight : (n,) float64, over the stars
+    """
+
+    slope: NDArray[np.float32]
+    weight: NDArray[np.float32]
+    vertex_slope: NDArray[np.float64]
+    vertex_weight: NDArray[np.float64]
+
+
+class FacePoints(NamedTuple):
+    """The removed vertices, face by face: ``n_points[f]`` of them from ``start[f]`` on.
+
+    start, n_points : (n_faces,) int32
     x, y : (capacity,) float64; z : (capacity, c) float64
     """
 
     start: NDArray[np.int32]
-    count: NDArray[np.int32]
+    n_points: NDArray[np.int32]
     x: NDArray[np.float64]
     y: NDArray[np.float64]
     z: NDArray[np.float64]
@@ -39,7 +53,7 @@ class FacePoints(NamedTuple):
 
 # Which face of the fan (a, b[t], b[t + 1]), t < n_wedges, holds the point at (x, y) from a?
 # bx, by (n_wedges + 1,) float64 from a, counter-clockwise; hint: where to look first
-@njit
+@inlined
 def locate(n_wedges, bx, by, x, y, hint):
     t = hint
     while t > 0 and bx[t] * y - by[t] * x < 0.0:
@@ -63,7 +77,7 @@ def count_points(start, stop, indptr, ring_faces, points, size):
         size[row] = 1
         for k in range(indptr[row], indptr[row + 1]):
             if ring_faces[k] >= 0:
-                size[row] += points.count[ring_faces[k]]
+                size[row] += points.n_points[ring_faces[k]]
 
 
 # Move the points of each collapsed star, and its vertex, to the faces that now cover it.
@@ -115,7 +129,7 @@ def hand_over(
             if face < 0:
                 continue
             hint = min(max(k - 1, 0), n_wedges - 1)
-            for p in range(points.start[face], points.start[face] + points.count[face]):
+            for p in range(points.start[face], points.start[face] + points.n_points[face]):
                 t = locate(n_wedges, bx, by, points.x[p] - ax, points.y[p] - ay, hint)
                 wedge[n_found] = t
                 cursor[t] += 1
@@ -136,7 +150,7 @@ def hand_over(
             face = ring_faces[base + k]
             if face < 0:
                 continue
-            for q in range(points.start[face], points.start[face] + points.count[face]):
+            for q in range(points.start[face], points.start[face] + points.n_points[face]):
                 t = wedge[n_found]
                 n_found += 1
                 p = cursor[t]
@@ -152,11 +166,11 @@ def hand_over(
                 continue
             if 1 <= k <= n_wedges:
                 points.start[face] = position
-                points.count[face] = cursor[k - 1] - position
+                points.n_points[face] = cursor[k - 1] - position
                 position = cursor[k - 1]
                 face_changed[face] = True
             else:
-                points.count[face] = 0
+                points.n_points[face] = 0
 
 
 # Copy the points of the given faces, in their order, to the front of other arrays.
@@ -174,15 +188,15 @@ def copy_points(start, stop, faces, first, points, x, y, z):
 
 # Errors of the faces that changed, or one of whose corners moved (z_changed (n,) bool).
 # squared (m,) float64: sum over points and channels; squared_z (m,) or (0,): of heights alone;
-# largest_z (m,): the largest squared height error. slope (3 m, c), weight (3 m,) float32 or empty:
-# sums of error times hat function, and of the hat function's own share, for each corner.
-# is_stale (n,) bool: set for the corners of those faces
+# largest_z (m,): the largest squared height error; moments: of the corners, empty without update.
+# is_stale (n,) bool: set for the corners of those faces; is_new: where the faces themselves changed
 @njit
 def sum_over_faces(
     start, stop, mesh, face_lives, face_changed, z_changed, surface, points,
-    squared, squared_z, largest_z, slope, weight, is_stale, has_moved,
+    squared, squared_z, largest_z, moments, is_stale, is_new, has_moved,
 ):  # fmt: skip
     n_channels = surface.z.shape[1]
+    slope, weight = moments.slope, moments.weight
     with_slopes, with_z = weight.shape[0] > 0, squared_z.shape[0] > 0
     slope_sums = np.empty((3, n_channels))
     for face in range(start, stop):
@@ -191,18 +205,20 @@ def sum_over_faces(
         a, b, c = mesh.origin[3 * face], mesh.origin[3 * face + 1], mesh.origin[3 * face + 2]
         if not (face_changed[face] or z_changed[a] or z_changed[b] or z_changed[c]):
             continue
-        face_changed[face] = False
+        if face_changed[face]:
+            face_changed[face] = False
+            is_new[a], is_new[b], is_new[c] = True, True, True
         is_stale[a], is_stale[b], is_stale[c] = True, True, True
         has_moved[a], has_moved[b], has_moved[c] = True, True, True
         sum_all, sum_z, largest = 0.0, 0.0, 0.0
         weight_a, weight_b, weight_c = 0.0, 0.0, 0.0
         slope_sums[:] = 0.0
-        if points.count[face] > 0:
+        if points.n_points[face] > 0:
             ax, ay = surface.x[a], surface.y[a]
             bx, by = surface.x[b] - ax, surface.y[b] - ay
             cx, cy = surface.x[c] - ax, surface.y[c] - ay
             per_area = 1.0 / (bx * cy - by * cx)
-            for p in range(points.start[face], points.start[face] + points.count[face]):
+            for p in range(points.start[face], points.start[face] + points.n_points[face]):
                 x, y = points.x[p] - ax, points.y[p] - ay
                 at_b = (x * cy - y * cx) * per_area
                 at_c = (bx * y - by * x) * per_area
@@ -235,14 +251,12 @@ def sum_over_faces(
                     slope[3 * face + corner, i] = slope_sums[corner, i]
 
 
-# Sums over the star of each vertex with has_moved (n,) bool, which is reset.
-# slope (3 m, c), weight (3 m,) float32 of the corners; vertex_slope (n, c), vertex_weight (n,)
+# Moments of the star of each vertex with has_moved (n,) bool, which is reset.
 @njit
-def sum_over_stars(
-    start, stop, mesh, vertex_lives, has_moved, surface, slope, weight, vertex_slope,
-    vertex_weight, is_stale,
-):  # fmt: skip
+def sum_over_stars(start, stop, mesh, vertex_lives, has_moved, surface, moments):
     n_channels = surface.z.shape[1]
+    slope, weight = moments.slope, moments.weight
+    vertex_slope, vertex_weight = moments.vertex_slope, moments.vertex_weight
     for v in range(start, stop):
         if not has_moved[v]:
             continue
