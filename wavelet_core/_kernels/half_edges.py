@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._inline import inlined
-from ._jit import njit
+from ._jit import inlined, njit
 
 NO_INDEX = -1
 # longest one-ring that is looked at; a vertex with more neighbours stays

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ._inline import inlined
-from ._jit import njit
+from ._jit import inlined, njit
 from .half_edges import MAX_RING, walk_ring
 
 # new faces thinner than this part of their longest edge squared are refused

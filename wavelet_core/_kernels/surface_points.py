@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._inline import inlined
-from ._jit import njit
+from ._jit import inlined, njit
 from .half_edges import MAX_RING, before
 
 
