@@ -30,6 +30,8 @@ LAZRS = Package("lazrs", "lazrs")
 PYPROJ = Package("pyproj", "pyproj", "python3-pyproj")
 PYTHONCDT = Package("pythoncdt", "PythonCDT")
 SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
+TRIMESH = Package("trimesh", "trimesh")
+EZDXF = Package("ezdxf", "ezdxf")
 
 #: What every algorithm needs.
 ALWAYS = (NUMPY, SCIPY)

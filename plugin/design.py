@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from qgis.core import (
+    QgsProcessingException,
     QgsProcessingParameterEnum,
+    QgsProcessingParameterMatrix,
     QgsProcessingParameterNumber,
 )
 
@@ -138,10 +140,47 @@ def add_design_parameters(algorithm) -> None:
         advanced=True,
     )
     algorithm.add(
+        QgsProcessingParameterNumber(
+            "REMOVAL_FRACTION",
+            tr("Largest share removed at a level"),
+            DOUBLE,
+            None,
+            optional=True,
+            minValue=0.01,
+            maxValue=1.0,
+        ),
+        tr(
+            "The <i>surface</i> partition takes at most this share of a level's vertices, between "
+            "0 and 1; empty for 0.25. A smaller share makes more levels and takes longer, and the "
+            "errors are a little smaller."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
         choice("VERTICAL_UNIT", tr("Unit of elevation"), VERTICAL_UNITS),
         tr(
             "By default the unit that the CRS states; where it states none, metres for a "
             "geographic CRS and the unit of x and y for any other. Results keep the input's unit."
+        ),
+        advanced=True,
+    )
+
+
+def add_weights_parameter(algorithm) -> None:
+    """Declare the weights of attributes, for the analyses that have any."""
+    algorithm.add(
+        QgsProcessingParameterMatrix(
+            "ATTRIBUTE_WEIGHTS",
+            tr("Weights of attributes"),
+            1,
+            False,
+            [tr("Attribute"), tr("Weight")],
+            optional=True,
+        ),
+        tr(
+            "How much an attribute counts, against the elevation, in which vertices go and how "
+            "they are predicted; each is scaled by its range first. 1 where it is not listed, 0 "
+            "for one that is only carried along."
         ),
         advanced=True,
     )
@@ -183,8 +222,76 @@ def design_options(algorithm, parameters, context) -> dict:
         name.lower(): algorithm.parameterAsString(parameters, name, context)
         for name in ("PARTITION", "NORM", "PREDICTION", "UPDATE")
     }
-    return {
+    options = {
         **{name: value for name, value in chosen.items() if value not in ("", DEFAULT)},
         "signal": algorithm.parameterAsString(parameters, "SIGNAL", context),
         "bending_weight": algorithm.parameterAsDouble(parameters, "BENDING_WEIGHT", context),
     }
+    if parameters.get("REMOVAL_FRACTION") is not None:
+        options["removal_fraction"] = algorithm.parameterAsDouble(
+            parameters, "REMOVAL_FRACTION", context
+        )
+    return options
+
+
+def matrix_pairs(algorithm, parameters, name, context) -> list[tuple]:
+    """Return the rows of a matrix of two columns; cells left empty do not count.
+
+    Raises
+    ------
+    ValueError
+        When there is a cell without its partner.
+    """
+    cells = algorithm.parameterAsMatrix(parameters, name, context)
+    cells = [cell for cell in cells if cell not in (None, "")]
+    return list(zip(cells[::2], cells[1::2], strict=True))
+
+
+def weights_refusal(algorithm, parameters, context) -> str | None:
+    """Return why the weights of attributes cannot be read, or None when they can."""
+    try:
+        weights = _listed_weights(algorithm, parameters, context).values()
+    except ValueError:
+        weights = [-1.0]
+    if all(0 <= weight < float("inf") for weight in weights):
+        return None
+    return tr(
+        "Weights are pairs of an attribute and a number of 0 or more, such as intensity and 0.5."
+    )
+
+
+def weight_options(algorithm, parameters, context, attribute_names, groups=None) -> dict:
+    """Return the weights as options of ``wavelet_core.analyse``; none where none are listed.
+
+    Parameters
+    ----------
+    algorithm : QgsProcessingAlgorithm
+    parameters : dict
+    context : QgsProcessingContext
+    attribute_names : sequence of str
+        Those that are analysed, in their order.
+    groups : dict of str to sequence of str, optional
+        Names that stand for several attributes, such as ``rgb``.
+    """
+    listed = _listed_weights(algorithm, parameters, context)
+    if not listed:
+        return {}
+    weights = dict.fromkeys(attribute_names, 1.0)
+    for name, weight in listed.items():
+        members = [member for member in (groups or {}).get(name, [name]) if member in weights]
+        if not members:
+            raise QgsProcessingException(
+                tr("There is no attribute {} to be weighted; {}.").format(
+                    name,
+                    tr("those analysed are: {}").format(", ".join(attribute_names))
+                    if attribute_names
+                    else tr("choose the attributes first"),
+                )
+            )
+        weights.update(dict.fromkeys(members, weight))
+    return {"attribute_weights": list(weights.values())}
+
+
+def _listed_weights(algorithm, parameters, context) -> dict[str, float]:
+    pairs = matrix_pairs(algorithm, parameters, "ATTRIBUTE_WEIGHTS", context)
+    return {str(name).strip(): float(weight) for name, weight in pairs}

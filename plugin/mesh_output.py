@@ -6,11 +6,62 @@ import os
 
 from qgis.core import (
     QgsProcessingContext,
+    QgsProcessingParameterFileDestination,
     QgsProcessingUtils,
 )
 
-from . import styles
+from . import dependencies, styles
 from .pyramids import cell_size, crs_of
+from .translation import tr
+
+#: Suffixes of mesh files and what their formats are called, the default first; those of
+#: ``wavelet_gis.meshfiles``, which a test compares.
+FORMATS = {
+    ".2dm": "2DM",
+    ".ply": "PLY",
+    ".obj": "OBJ",
+    ".stl": "STL",
+    ".glb": "GLB",
+    ".xml": "LandXML",
+    ".dxf": "DXF",
+}
+#: What a format needs beyond numpy.
+PACKAGES = {".glb": (dependencies.TRIMESH,), ".dxf": (dependencies.EZDXF,)}
+
+
+def add_mesh_parameter(algorithm, description) -> None:
+    """Declare MESH, a file in one of the formats."""
+    algorithm.add(
+        QgsProcessingParameterFileDestination(
+            "MESH",
+            description,
+            ";;".join(f"{name} (*{suffix})" for suffix, name in FORMATS.items()),
+            optional=True,
+            createByDefault=False,
+        ),
+        tr(
+            "The suffix chooses the format. A 2DM mesh opens in QGIS as a mesh layer and in "
+            "hydraulic models; PLY alone keeps attributes; OBJ, STL and GLB are for 3D viewers and "
+            "printers; LandXML (.xml) and DXF for CAD. GLB needs the Python package trimesh, DXF "
+            "ezdxf. STL and GLB hold coordinates from a local origin, which the file tells."
+        ),
+    )
+
+
+def mesh_refusal(algorithm, parameters, context) -> str | None:
+    """Return why MESH cannot be written, before anything is started, or None when it can."""
+    path = algorithm.parameterAsFileOutput(parameters, "MESH", context)
+    if not path or _suffix(path) in FORMATS:
+        return None
+    return tr("{}: a mesh is written as {}; end its name in one of these.").format(
+        path, ", ".join(FORMATS)
+    )
+
+
+def mesh_packages(algorithm, parameters, context) -> tuple[dependencies.Package, ...]:
+    """Return what the format of MESH needs beyond numpy."""
+    path = algorithm.parameterAsFileOutput(parameters, "MESH", context)
+    return PACKAGES.get(_suffix(path), ())
 
 
 def write_raster(algorithm, parameters, name, context, record, mesh, feedback) -> str:
@@ -37,7 +88,7 @@ def write_mesh_file(algorithm, parameters, name, context, record, mesh) -> str:
     path = algorithm.parameterAsFileOutput(parameters, name, context)
     with new_file(path, overwrite=True) as scratch:
         write_mesh(scratch, record.file_mesh(mesh), record.system.wkt)
-    if path.lower().endswith(".2dm") and context.project() is not None:
+    if _suffix(path) == ".2dm" and context.project() is not None:
         details = QgsProcessingContext.LayerDetails(
             os.path.splitext(os.path.basename(path))[0],
             context.project(),
@@ -47,3 +98,7 @@ def write_mesh_file(algorithm, parameters, name, context, record, mesh) -> str:
         context.addLayerToLoadOnCompletion(path, details)
         styles.style_output(context, path, styles.set_mesh_crs)
     return path
+
+
+def _suffix(path: str) -> str:
+    return os.path.splitext(path)[1].lower()

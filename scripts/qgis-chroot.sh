@@ -13,6 +13,7 @@ root=${QGIS_CHROOT:-${XDG_CACHE_HOME:-$HOME/.cache}/terrain-wavelets/qgis-trixie
 suite=trixie
 packages=(qgis python3-qgis qgis-providers python3-scipy python3-numba python3-pytest python3-hypothesis
           python3-laspy python3-sklearn python3-pip python3-venv proj-data make git)
+from_pip=(PythonCDT lazrs 'trimesh>=4.0' 'ezdxf>=1.1')
 
 say() { printf 'qgis-chroot: %s\n' "$*" >&2; }
 
@@ -40,9 +41,15 @@ make_chroot() {
     done
     printf 'Dpkg::Use-Pty "0";\nAcquire::Retries "3";\nAPT::Install-Recommends "false";\n' >"$root/etc/apt/apt.conf.d/90terrain-wavelets"
     inside "apt-get update -q && apt-get install -y -q ${packages[*]} && apt-get clean" >&2
-    # What Debian does not carry; the chroot is ours alone, so its own Python may take it.
-    inside "python3 -m pip install -q --break-system-packages --root-user-action=ignore PythonCDT lazrs" >&2
     touch "$root/.terrain-wavelets-ready"
+}
+
+# What Debian does not carry, or too old; the chroot is ours alone, so its own Python may take it.
+add_from_pip() {
+    local stamp=$root/.terrain-wavelets-pip
+    [ "$(cat "$stamp" 2>/dev/null)" != "${from_pip[*]}" ] || return 0
+    inside "python3 -m pip install -q --break-system-packages --root-user-action=ignore $(printf '%q ' "${from_pip[@]}")" >&2
+    printf '%s\n' "${from_pip[*]}" >"$stamp"
 }
 
 # inside SHELL_COMMAND: run it by sh in the chroot, with proc, dev and the repository mounted for it alone
@@ -63,6 +70,7 @@ inside() {
 }
 
 [ -e "$root/.terrain-wavelets-ready" ] || make_chroot
+add_from_pip
 
 if [ $# -eq 0 ]; then
     inside "QT_QPA_PLATFORM=offscreen python3 -c 'import sys, numpy, scipy, numba; from qgis.core import Qgis; print(\"QGIS\", Qgis.QGIS_VERSION, \"Python\", sys.version.split()[0], \"numpy\", numpy.__version__, \"scipy\", scipy.__version__, \"numba\", numba.__version__)'"

@@ -124,3 +124,20 @@ def survey(n=2000, size=1000.0, seed=3):
     plan = np.random.default_rng(seed).random((n, 2)) * size
     z = 100 + 15 * np.sin(plan[:, 0] / 120) + np.where(plan[:, 1] > size / 2, 8.0, 0.0)
     return np.column_stack([plan[:, 0] + 700000.0, plan[:, 1] + 6600000.0, z])
+
+
+def write_las(path, xyz, epsg=2154, **dimensions):
+    """Write points as LAS 1.4 with whole millimetres; ``dimensions`` by their LAS names."""
+    import laspy
+    from pyproj import CRS
+
+    header = laspy.LasHeader(point_format=7, version="1.4")
+    header.offsets, header.scales = np.floor(np.min(xyz, axis=0)), np.full(3, 0.001)
+    if epsg:
+        header.add_crs(CRS.from_epsg(epsg))
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = np.transpose(xyz)
+    for name, values in dimensions.items():
+        cloud[name] = values
+    cloud.write(str(path))
+    return str(path)

@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from laspy import LasHeader
     from laspy.point.record import PackedPointRecord
 
-__all__ = ["read_cloud", "write_cloud"]
+__all__ = ["ALIASES", "read_cloud", "write_cloud"]
 
 #: Name of the attribute that is computed rather than read.
 HEIGHT_ABOVE_GROUND = "hag"
 
 #: What people call dimensions, beside the names that laspy gives them.
-_ALIASES: dict[str, tuple[str, ...]] = {
+ALIASES: dict[str, tuple[str, ...]] = {
     "class": ("classification",),
     "rgb": ("red", "green", "blue"),
     "returns": ("return_number", "number_of_returns"),
@@ -231,10 +231,10 @@ def _attributes(
     name: str, wanted: str, points: PackedPointRecord, header: LasHeader
 ) -> list[PointAttribute]:
     available = list(points.point_format.dimension_names)
-    if wanted not in available and wanted in _ALIASES:
+    if wanted not in available and wanted in ALIASES:
         return [
             attribute
-            for part in _ALIASES[wanted]
+            for part in ALIASES[wanted]
             for attribute in _attributes(name, part, points, header)
         ]
     if wanted not in available and wanted == HEIGHT_ABOVE_GROUND:

@@ -14,7 +14,7 @@ from qgis.core import (
 )
 
 from .. import dependencies
-from ..design import vertical_unit
+from ..design import add_weights_parameter, vertical_unit, weight_options, weights_refusal
 from ._analysis import AnalysisAlgorithm
 
 #: Dimensions that are offered by name; any other can be written in.
@@ -81,6 +81,7 @@ class AnalysePointCloud(AnalysisAlgorithm):
             self.tr("Names of further dimensions of the file, separated by commas."),
             advanced=True,
         )
+        add_weights_parameter(self)
         self.add(
             QgsProcessingParameterString("CLASSES", self.tr("Classes"), optional=True),
             self.tr(
@@ -117,7 +118,8 @@ class AnalysePointCloud(AnalysisAlgorithm):
             self._classes(parameters, context)
         except ValueError:
             return False, self.tr("Classes are numbers separated by commas, such as 2,9.")
-        return True, ""
+        refusal = weights_refusal(self, parameters, context)
+        return refusal is None, refusal or ""
 
     def packages(self, parameters, context):
         """Return what reading and triangulating the file needs."""
@@ -159,6 +161,17 @@ class AnalysePointCloud(AnalysisAlgorithm):
             vertical_unit(self, parameters, context) or place.vertical_unit,
             fault=place.fault,
         )
+
+    def more_options(self, parameters, context, terrain):
+        """Return the weights of the attributes."""
+        from wavelet_gis.pointcloud import ALIASES
+
+        names_of_dimension = {}
+        for attribute in terrain.original.attributes:
+            names_of_dimension.setdefault(attribute.dimension, []).append(attribute.name)
+        names = terrain.mesh.attribute_names
+        groups = {**ALIASES, **names_of_dimension}
+        return weight_options(self, parameters, context, names, groups)
 
     def _attributes(self, parameters, context):
         named = self.parameterAsEnumStrings(parameters, "ATTRIBUTES", context)

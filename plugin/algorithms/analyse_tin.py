@@ -12,7 +12,7 @@ from qgis.core import (
 )
 
 from .. import dependencies
-from ..design import vertical_unit
+from ..design import add_weights_parameter, vertical_unit, weight_options, weights_refusal
 from ._analysis import AnalysisAlgorithm
 
 
@@ -79,6 +79,7 @@ class AnalyseTin(AnalysisAlgorithm):
             ),
             self.tr("Numeric fields of points that are transformed along with the elevation."),
         )
+        add_weights_parameter(self)
         self.add(
             QgsProcessingParameterFeatureSource(
                 "BREAKLINES", self.tr("Breaklines"), [source_type.TypeVectorLine], optional=True
@@ -113,6 +114,12 @@ class AnalyseTin(AnalysisAlgorithm):
         )
         self.add_analysis_parameters()
 
+    def checkParameterValues(self, parameters, context):
+        """Refuse weights that are no numbers."""
+        is_fine, message = super().checkParameterValues(parameters, context)
+        refusal = weights_refusal(self, parameters, context) if is_fine else message
+        return refusal is None, refusal or ""
+
     def packages(self, parameters, context):
         """Return the Delaunay library, where points are to be triangulated."""
         source = self.parameterAsSource(parameters, "INPUT", context)
@@ -146,10 +153,12 @@ class AnalyseTin(AnalysisAlgorithm):
         return TinTerrain(name, mesh, system, frame, unit)
 
     def more_options(self, parameters, context, terrain):
-        """Return the locked vertices."""
-        if self.locked is None or not self.locked.any():
-            return {}
-        return {"locked": self.locked}
+        """Return the locked vertices and the weights of the attributes."""
+        names = terrain.mesh.attribute_names
+        options = weight_options(self, parameters, context, names)
+        if self.locked is not None and self.locked.any():
+            options["locked"] = self.locked
+        return options
 
     def _mesh_of_triangles(self, system, unit, feedback):
         from wavelet_gis.tin import frame_of_coordinates, mesh_of_corners

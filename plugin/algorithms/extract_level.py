@@ -7,12 +7,12 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
-    QgsProcessingParameterFileDestination,
     QgsProcessingParameterNumber,
     QgsProcessingParameterRasterDestination,
 )
 
 from ..design import DOUBLE, INTEGER
+from ..mesh_output import add_mesh_parameter, mesh_packages, mesh_refusal
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -91,16 +91,7 @@ class ExtractLevel(PyramidAlgorithm):
             ),
             self.tr("The TIN evaluated at the cell centres, 32-bit floats."),
         )
-        self.add(
-            QgsProcessingParameterFileDestination(
-                "MESH",
-                self.tr("Mesh of the level"),
-                self.tr("2DM mesh (*.2dm);;PLY (*.ply);;OBJ (*.obj)"),
-                optional=True,
-                createByDefault=False,
-            ),
-            self.tr("A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models."),
-        )
+        add_mesh_parameter(self, self.tr("Mesh of the level"))
         self.addOutput(QgsProcessingOutputNumber("N_VERTICES", self.tr("Number of vertices")))
         self.addOutput(QgsProcessingOutputNumber("N_FACES", self.tr("Number of triangles")))
         self.addOutput(
@@ -114,6 +105,16 @@ class ExtractLevel(PyramidAlgorithm):
                 self.tr("Largest error of the surface, in the unit of elevation"),
             )
         )
+
+    def checkParameterValues(self, parameters, context):
+        """Refuse a mesh of an unknown format."""
+        is_fine, message = super().checkParameterValues(parameters, context)
+        refusal = mesh_refusal(self, parameters, context) if is_fine else message
+        return refusal is None, refusal or ""
+
+    def packages(self, parameters, context):
+        """Return what writing the mesh needs."""
+        return mesh_packages(self, parameters, context)
 
     def work(self, parameters, context, feedback):
         """Synthesise the level and write what was asked for."""

@@ -14,7 +14,7 @@ from qgis.core import (
 )
 
 from .. import dependencies
-from ..design import DOUBLE, INTEGER
+from ..design import DOUBLE, INTEGER, matrix_pairs
 from ..restored_output import add_restored_outputs, nothing_written, write_restored
 from ._pyramid_input import PyramidAlgorithm
 
@@ -268,14 +268,8 @@ class FilterLevels(PyramidAlgorithm):
         return {"DIFFERENCE": path}
 
     def _gains(self, parameters, context):
-        values = [
-            v for v in self.parameterAsMatrix(parameters, "GAINS", context) if v not in (None, "")
-        ]
-        if len(values) % 2:
-            raise ValueError("a level without a gain")
-        return [
-            (int(level), float(gain)) for level, gain in zip(values[::2], values[1::2], strict=True)
-        ]
+        pairs = matrix_pairs(self, parameters, "GAINS", context)
+        return [(int(level), float(gain)) for level, gain in pairs]
 
     def _levels(self, parameters, context):
         return [n for n in ("FIRST_LEVEL", "LAST_LEVEL") if parameters.get(n) is not None]

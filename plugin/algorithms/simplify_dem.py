@@ -14,6 +14,7 @@ from qgis.core import (
 
 from ..base import TerrainWaveletsAlgorithm
 from ..design import DOUBLE, INTEGER, add_design_parameters, design_options
+from ..mesh_output import add_mesh_parameter, mesh_packages, mesh_refusal
 from ._dem_input import DemInput
 
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
@@ -94,16 +95,7 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
             ),
             self.tr("The TIN evaluated at the cell centres."),
         )
-        self.add(
-            QgsProcessingParameterFileDestination(
-                "MESH",
-                self.tr("Mesh of the TIN"),
-                self.tr("2DM mesh (*.2dm);;PLY (*.ply);;OBJ (*.obj)"),
-                optional=True,
-                createByDefault=False,
-            ),
-            self.tr("A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models."),
-        )
+        add_mesh_parameter(self, self.tr("Mesh of the TIN"))
         self.add(
             QgsProcessingParameterFileDestination(
                 "OUTPUT",
@@ -132,7 +124,12 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
             return False, self.tr(
                 "Say one of the three: the number of vertices, the largest error, or the RMSE."
             )
-        return True, ""
+        refusal = mesh_refusal(self, parameters, context)
+        return refusal is None, refusal or ""
+
+    def packages(self, parameters, context):
+        """Return what writing the mesh needs."""
+        return mesh_packages(self, parameters, context)
 
     def work(self, parameters, context, feedback):
         """Read, simplify, measure, write what was asked for."""

@@ -615,16 +615,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>2DM mesh (*.2dm);;PLY (*.ply);;OBJ (*.obj)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Extract level</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1175,6 +1165,11 @@
   </message>
   <message>
     <location filename="../../plugin/design.py"/>
+    <source>Attribute</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
     <source>By default the unit that the CRS states; where it states none, metres for a geographic CRS and the unit of x and y for any other. Results keep the input's unit.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1201,6 +1196,16 @@
   <message>
     <location filename="../../plugin/design.py"/>
     <source>How many steps of analysis at most (the paper's L). Each removes about a quarter of the vertices, so 12 levels leave some 2 %. Fewer come out where nothing more can go. Empty for 12, or, with a rule below, for as many as that takes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>How much an attribute counts, against the elevation, in which vertices go and how they are predicted; each is scaled by its range first. 1 where it is not listed, 0 for one that is only carried along.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Largest share removed at a level</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1245,12 +1250,22 @@
   </message>
   <message>
     <location filename="../../plugin/design.py"/>
+    <source>The &lt;i&gt;surface&lt;/i&gt; partition takes at most this share of a level's vertices, between 0 and 1; empty for 0.25. A smaller share makes more levels and takes longer, and the errors are a little smaller.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
     <source>The coarsest level has exactly so many vertices, if it can get there.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/design.py"/>
     <source>The same for the root mean square over all input points, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>There is no attribute {} to be weighted; {}.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1265,6 +1280,11 @@
   </message>
   <message>
     <location filename="../../plugin/design.py"/>
+    <source>Weight</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
     <source>Weight of bending energy</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1275,7 +1295,27 @@
   </message>
   <message>
     <location filename="../../plugin/design.py"/>
+    <source>Weights are pairs of an attribute and a number of 0 or more, such as intensity and 0.5.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>Weights of attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
     <source>Which vertices go at a level (the paper's odd vertices). &lt;i&gt;surface&lt;/i&gt;, the default: those that raise the vertical error at all input points least; &lt;i&gt;quadric&lt;/i&gt;: those of least cost by generalised quadric and bending energy, as in the paper; &lt;i&gt;colouring&lt;/i&gt;: regardless of shape, the paper's baseline; &lt;i&gt;random&lt;/i&gt;: in random order.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>choose the attributes first</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/design.py"/>
+    <source>those analysed are: {}</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1286,6 +1326,16 @@
   <message>
     <location filename="../../plugin/lines.py"/>
     <source>{}: there is no polygon to clip by.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/mesh_output.py"/>
+    <source>The suffix chooses the format. A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models; PLY alone keeps attributes; OBJ, STL and GLB are for 3D viewers and printers; LandXML (.xml) and DXF for CAD. GLB needs the Python package trimesh, DXF ezdxf. STL and GLB hold coordinates from a local origin, which the file tells.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/mesh_output.py"/>
+    <source>{}: a mesh is written as {}; end its name in one of these.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -16,7 +16,7 @@ FOOT_WKT = 'PROJCS["site",UNIT["US survey foot",0.3048006096012192]]'
 def mesh():
     """Hills far from the origin, where 32-bit numbers resolve half a metre only."""
     local = synthetic.hills(8, 9, cell=1.0)
-    return TriangleMesh(local.vertices + [429252.25, 5150485.5, 0], local.faces)
+    return TriangleMesh(local.vertices + np.array([429252.25, 5150485.5, 0]), local.faces)
 
 
 def corners(mesh):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from qgis_layers import Log, hills, read_raster, wkt_layer, write_raster
+from qgis_layers import Log, hills, read_raster, wkt_layer, write_las, write_raster
 
 FOLDER = Path(__file__).resolve().parent.parent.parent / "processing_models"
 
@@ -129,7 +129,7 @@ def test_dem_to_denoised_dem_and_report(run_model, tmp_path):
 
 
 def test_point_cloud_to_filtered_dem(run_model, tmp_path):
-    laspy = pytest.importorskip("laspy")
+    pytest.importorskip("laspy")
     generator = np.random.default_rng(5)
     plan = np.stack(np.meshgrid(np.arange(40.0), np.arange(40.0)), -1).reshape(-1, 2) * 25.0
     plan += generator.uniform(-8, 8, plan.shape)
@@ -137,19 +137,15 @@ def test_point_cloud_to_filtered_dem(run_model, tmp_path):
     def terrain(x, y):
         return 100 + 15 * np.sin(x / 120) + 8 * np.cos(y / 150)
 
-    header = laspy.LasHeader(point_format=6, version="1.4")
-    header.offsets, header.scales = [700000.0, 6600000.0, 0.0], [0.001, 0.001, 0.001]
-    cloud = laspy.LasData(header)
-    cloud.x, cloud.y = 700000.0 + plan[:, 0], 6600000.0 + plan[:, 1]
     is_tree = np.arange(len(plan)) % 10 == 0
-    cloud.classification = np.where(is_tree, 5, 2)
     noise = generator.normal(0, 0.3, len(plan))
-    cloud.z = terrain(*plan.T) + noise + np.where(is_tree, 20.0, 0.0)
-    cloud.write(str(tmp_path / "points.las"))
+    z = terrain(*plan.T) + noise + np.where(is_tree, 20.0, 0.0)
+    xyz = np.column_stack([700000.0 + plan[:, 0], 6600000.0 + plan[:, 1], z])
+    points = write_las(tmp_path / "points.las", xyz, classification=np.where(is_tree, 5, 2))
     results, _ = run_model(
         "Point cloud to filtered DEM",
         {
-            "points": str(tmp_path / "points.las"),
+            "points": points,
             "classes": "2",
             "noise": 0.3,
             "cell_size": 20.0,

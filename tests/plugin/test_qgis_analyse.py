@@ -10,6 +10,7 @@ from qgis_layers import (
     read_raster,
     survey,
     wkt_layer,
+    write_las,
     write_raster,
 )
 
@@ -42,6 +43,15 @@ def pyramid(qgis, tmp_path_factory):
         "terrainwavelets:analysedem",
         {"INPUT": path, "OUTPUT": str(folder / "p.gpkg"), "LEVELS": 5},
     )
+
+
+def weights_in(path):
+    """Return the weight of each attribute that a pyramid file tells of."""
+    from wavelet_gis.pyramid_file import read_pyramid
+
+    pyramid = read_pyramid(path).pyramid
+    names = pyramid.channels[-len(pyramid.parameters["attribute_weights"]) :]
+    return dict(zip(names, pyramid.parameters["attribute_weights"], strict=True))
 
 
 class TestDem:
@@ -105,6 +115,17 @@ class TestDem:
             "analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "b.gpkg"), "MAX_ERROR": 8.0}
         )
         assert 0 < tight["MAX_ERROR_SURFACE"] <= 8.0
+
+    def test_a_smaller_share_at_a_level_makes_more_levels(self, run, tmp_path):
+        path = write_raster(tmp_path / "dem.tif", hills().astype("float32"))
+        parameters = {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg"), "TARGET_VERTICES": 800}
+        default = run("analysedem", parameters)
+        told = run("analysedem", {**parameters, "REMOVAL_FRACTION": 0.25})
+        small = run("analysedem", {**parameters, "REMOVAL_FRACTION": 0.1})
+        assert default["N_LEVELS"] == told["N_LEVELS"]
+        assert default["RMSE_SURFACE"] == told["RMSE_SURFACE"]
+        assert small["N_LEVELS"] > told["N_LEVELS"]
+        assert small["COARSE_VERTICES"] == 800
 
     def test_the_pyramid_is_a_valid_geopackage_with_styled_layers(self, run, tmp_path):
         from osgeo_utils.samples import validate_gpkg
@@ -326,6 +347,24 @@ class TestPointsAndTins:
         top = max(p.z() for f in back["TIN"].getFeatures() for p in f.geometry().vertices())
         assert top == pytest.approx(xyz[:300, 2].max())
 
+    def test_weights_are_those_of_the_named_fields(self, run, refused, tmp_path):
+        xyz = survey(400)
+        rows = [(float(x), float(y)) for x, y, _ in xyz]
+        layer = point_layer(xyz, fields=("east:double", "north:double"), rows=rows)
+        parameters = {
+            "INPUT": layer,
+            "ATTRIBUTES": ["north", "east"],
+            "OUTPUT": str(tmp_path / "p.gpkg"),
+        }
+        made = run("analysetin", {**parameters, "ATTRIBUTE_WEIGHTS": ["east", 0.25]})
+        assert weights_in(made["OUTPUT"]) == {"north": 1.0, "east": 0.25}
+        message = refused("analysetin", {**parameters, "ATTRIBUTE_WEIGHTS": ["up", 0.25]})
+        assert "north, east" in message
+        message = refused("analysetin", {**parameters, "ATTRIBUTE_WEIGHTS": ["east", "heavy"]})
+        assert "such as intensity and 0.5" in message
+        message = refused("analysetin", {**parameters, "ATTRIBUTE_WEIGHTS": ["east", -1]})
+        assert "0 or more" in message
+
     def test_triangles_come_back_as_they_were(self, run, tmp_path):
         first = run(
             "analysetin",
@@ -395,3 +434,52 @@ class TestPointsAndTins:
         ends = [p for p in corners if abs(p.y() - 6600500) < 0.01]
         assert min(p.x() for p in ends) == pytest.approx(700100, abs=0.01)
         assert max(p.x() for p in ends) == pytest.approx(700900, abs=0.01)
+
+
+class TestPointCloud:
+    @pytest.fixture
+    def cloud(self, tmp_path):
+        """Return a LAS file of a slope with a class, an intensity and colours."""
+        pytest.importorskip("laspy")
+        xyz = survey(600)
+        east = (xyz[:, 0] - xyz[:, 0].min()).astype("uint16")
+        return write_las(
+            tmp_path / "points.las",
+            xyz,
+            classification=np.where(xyz[:, 1] > 6600500, 5, 2),
+            intensity=east,
+            red=east + 1,
+            green=east[::-1],
+            blue=2 * east,
+        )
+
+    def test_a_weight_of_rgb_is_that_of_the_three_colours(self, run, cloud, tmp_path):
+        made = run(
+            "analysepointcloud",
+            {
+                "INPUT": cloud,
+                "ATTRIBUTES": ["intensity", "rgb"],
+                "ATTRIBUTE_WEIGHTS": ["rgb", 0.5, "intensity", 0],
+                "OUTPUT": str(tmp_path / "p.gpkg"),
+            },
+        )
+        assert weights_in(made["OUTPUT"]) == {
+            "intensity": 0.0,
+            "red": 0.5,
+            "green": 0.5,
+            "blue": 0.5,
+        }
+        back = run(
+            "reconstruct",
+            {"INPUT": made["OUTPUT"], "POINT_CLOUD": str(tmp_path / "back.las")},
+        )
+        assert back["EXACT"] == "yes"
+
+    def test_a_weight_of_what_is_not_analysed_is_refused(self, refused, cloud, tmp_path):
+        parameters = {"INPUT": cloud, "OUTPUT": str(tmp_path / "p.gpkg")}
+        weights = {"ATTRIBUTE_WEIGHTS": ["rgb", 0.5]}
+        assert "choose the attributes" in refused("analysepointcloud", {**parameters, **weights})
+        parameters["ATTRIBUTES"] = ["intensity"]
+        message = refused("analysepointcloud", {**parameters, **weights})
+        assert "no attribute rgb" in message
+        assert "intensity" in message

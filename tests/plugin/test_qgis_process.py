@@ -111,6 +111,17 @@ def test_a_missing_package_is_named_with_its_remedy(
     assert not (tmp_path / "o.gpkg").exists()
 
 
+@pytest.mark.parametrize(("hidden", "suffix"), [("trimesh", ".glb"), ("ezdxf", ".dxf")])
+def test_a_mesh_format_without_its_library(qgis_process, tmp_path, hidden, suffix):
+    dem = write_raster(tmp_path / "dem.tif", hills(20, 20).astype("float32"))
+    mesh = tmp_path / f"mesh{suffix}"
+    parameters = {"INPUT": dem, "VERTICES": 50, "MESH": str(mesh)}
+    text = qgis_process("simplifydem", parameters, [hidden], fails=True)
+    assert f"missing Python package: {hidden}" in text
+    assert "install" in text
+    assert not mesh.exists()
+
+
 def test_a_text_file_as_las_is_refused_in_one_sentence(qgis_process, tmp_path):
     path = tmp_path / "text.las"
     path.write_text("these are no points")

@@ -203,6 +203,50 @@ class TestSimplify:
         assert 0 < made[figure] <= 6.0
         assert made["N_VERTICES"] < 6300
 
+    @pytest.mark.parametrize(
+        ("suffix", "start"),
+        [
+            (".2dm", b"MESH2D"),
+            (".ply", b"ply"),
+            (".obj", b"#"),
+            (".stl", b"origin"),
+            (".glb", b"glTF"),
+            (".xml", b"<?xml"),
+            (".dxf", b"  0"),
+        ],
+    )
+    def test_every_mesh_format(self, run, dem, tmp_path, suffix, start):
+        library = {".glb": "trimesh", ".dxf": "ezdxf"}.get(suffix)
+        if library:
+            pytest.importorskip(library)
+        path = tmp_path / f"m{suffix}"
+        made = run("simplifydem", {"INPUT": dem, "VERTICES": 60, "MESH": str(path)})
+        assert made["MESH"] == str(path)
+        content = path.read_bytes()
+        assert content.startswith(start)
+        n_written = {
+            ".2dm": content.count(b"E3T"),
+            ".stl": int.from_bytes(content[80:84], "little"),
+            ".xml": content.count(b"<F>"),
+            ".dxf": content.count(b"3DFACE"),
+        }
+        if suffix in n_written:
+            assert n_written[suffix] == made["N_FACES"]
+
+    def test_another_mesh_format_is_refused_before_the_work(self, provider, dem, pyramid):
+        from qgis.core import QgsProcessingContext
+
+        for name, parameters in (
+            ("simplifydem", {"INPUT": dem, "VERTICES": 60}),
+            ("extractlevel", {"INPUT": pyramid}),
+        ):
+            algorithm = provider.algorithm(name).create()
+            is_fine, message = algorithm.checkParameterValues(
+                {**parameters, "MESH": "m.shp"}, QgsProcessingContext()
+            )
+            assert not is_fine
+            assert ".2dm" in message
+
     def test_two_rules_are_refused(self, provider, dem):
         from qgis.core import QgsProcessingContext
 
@@ -251,13 +295,15 @@ def test_two_in_batch(provider, pyramid, tmp_path):
 
 
 def test_the_choices_are_served_by_the_core(qgis):
-    from terrain_wavelets.plugin import design
+    from terrain_wavelets.plugin import design, mesh_output
 
     from wavelet_core.options import PARTITIONS, SIGNALS
     from wavelet_core.prediction import PREDICTIONS
     from wavelet_core.update import UPDATES
+    from wavelet_gis.meshfiles import MESH_SUFFIXES
 
     assert set(design.PARTITIONS) <= set(PARTITIONS)
     assert set(design.PREDICTIONS) <= set(PREDICTIONS.values())
     assert set(design.UPDATES) == set(UPDATES.values())
     assert set(design.SIGNALS) == set(SIGNALS)
+    assert set(mesh_output.FORMATS) == set(MESH_SUFFIXES)
