@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 
 from ._kernels._jit import run_in_ranges
 from ._kernels.connectivity import fill_stars
-from ._kernels.half_edges import HalfEdges, find_outgoing, find_twins
+from ._kernels.half_edges import (
+    HalfEdges,
+    find_outgoing,
+    find_twins,
+    pack_faces,
+    pack_vertices,
+)
 from ._kernels.surface_choice import (
     CANDIDATE,
     TAKEN,
@@ -39,7 +45,7 @@ CHEAPEST_SHARE = 16
 #: Errors below this part of the range of z are rounding.
 ROUNDING = 1e-9
 #: Arrays are packed when no more than this share of them is in use.
-PACKED_SHARE = 0.7
+PACKED_SHARE = 0.5
 
 
 class SurfaceLevel:
@@ -347,16 +353,14 @@ class SurfaceLevel:
         face_position = np.full(len(self._face_lives), -1, dtype=np.int32)
         face_position[faces] = np.arange(len(faces), dtype=np.int32)
 
-        def moved(half_edges: NDArray[np.int32]) -> NDArray[np.int32]:
-            face, corner = np.divmod(half_edges, np.int32(3))
-            return np.where(half_edges < 0, np.int32(-1), 3 * face_position[face] + corner)
-
-        corners = (3 * faces[:, None] + np.arange(3)).ravel()
-        self._mesh = HalfEdges(
-            position[self._mesh.origin[corners]],
-            moved(self._mesh.twin[corners]),
-            moved(self._mesh.outgoing[vertices]),
+        packed = HalfEdges(
+            np.empty(3 * len(faces), dtype=np.int32),
+            np.empty(3 * len(faces), dtype=np.int32),
+            np.empty(len(vertices), dtype=np.int32),
         )
+        run_in_ranges(pack_faces, len(faces), faces, position, face_position, self._mesh, packed)
+        run_in_ranges(pack_vertices, len(vertices), vertices, face_position, self._mesh, packed)
+        self._mesh = packed
         self._surface = Surface(*(np.ascontiguousarray(a[vertices]) for a in self._surface))
         self._points = self._points._replace(
             start=self._points.start[faces], n_points=self._points.n_points[faces]
@@ -369,9 +373,10 @@ class SurfaceLevel:
         if len(self._squared_z):
             self._squared_z = self._squared_z[faces]
         if self._with_update:
+            n_channels = self._moments.slope.shape[1]
             self._moments = Moments(
-                self._moments.slope[corners],
-                self._moments.weight[corners],
+                self._moments.slope.reshape(-1, 3, n_channels)[faces].reshape(-1, n_channels),
+                self._moments.weight.reshape(-1, 3)[faces].ravel(),
                 self._moments.vertex_slope[vertices],
                 self._moments.vertex_weight[vertices],
             )

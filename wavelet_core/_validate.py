@@ -43,17 +43,16 @@ def as_faces(faces: ArrayLike, n_vertices: int) -> IntArray:
     MeshError
         Wrong shape or type, an index out of range, or a face that uses a vertex twice.
     """
-    array = np.array(faces, order="C")
+    array = np.asarray(faces)
     if array.size == 0:
         return np.empty((0, 3), dtype=np.int64)
     if array.ndim != 2 or array.shape[1] != 3:
         raise MeshError(f"faces have shape {array.shape}; give (n_faces, 3) vertex indices.")
     if array.dtype.kind not in "iu":
         raise MeshError(f"faces have dtype {array.dtype}; give integer vertex indices.")
-    array = array.astype(np.int64, copy=False)
-    outside = ((array < 0) | (array >= n_vertices)).any(axis=1)
-    if outside.any():
-        face = int(np.argmax(outside))
+    array = np.array(array, dtype=np.int64, order="C")
+    if array.min() < 0 or array.max() >= n_vertices:
+        face = int(np.argmax(((array < 0) | (array >= n_vertices)).any(axis=1)))
         raise MeshError(
             f"face {face} uses vertex {array[face].tolist()}, but the vertices are 0 to "
             f"{n_vertices - 1}; drop the face or give all vertices.",
@@ -107,9 +106,9 @@ def as_attributes(
 
 
 def _require_finite(array: FloatArray, row_name: str, value_name: str) -> None:
-    bad = ~np.isfinite(array).all(axis=1)
-    if bad.any():
-        row = int(np.argmax(bad))
+    is_finite = np.isfinite(array)
+    if not is_finite.all():
+        row = int(np.argmin(is_finite.all(axis=1)))
         raise MeshError(
             f"{row_name} {row} has a {value_name} that is not a finite number "
             f"({array[row].tolist()}); drop the {row_name} or fill the value.",

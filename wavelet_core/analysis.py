@@ -339,9 +339,9 @@ class _Normalisation:
     """Centre and range of the input's columns, by which cost and prediction measure."""
 
     def __init__(self, mesh: TriangleMesh, options: AnalysisOptions) -> None:
-        columns = np.hstack([mesh.vertices, mesh.attributes])
-        low, high = columns.min(axis=0), columns.max(axis=0)
-        extent = high - low
+        columns = [*mesh.vertices.T, *mesh.attributes.T]
+        low = np.array([column.min() for column in columns])
+        extent = np.array([np.ptp(column) for column in columns])
         self._centre = low + extent / 2
         weights = np.array((1.0, 1.0, 1.0, *options.attribute_weights))
         self._factor = weights / np.where(extent > 0, extent, 1.0)

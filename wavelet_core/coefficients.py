@@ -60,8 +60,9 @@ def scaled(pyramid: Pyramid, gains: Gains, coarse: float | Sequence[float] = 1.0
     than the one-ring mean, which has a term in the even coefficients).
     """
     n_channels = len(pyramid.channels)
-    factors = {_as_level(level, pyramid): _as_gain(gain, n_channels, level)
-               for level, gain in gains.items()}  # fmt: skip
+    for level in gains:
+        check_level(level, pyramid)
+    factors = {level: _as_gain(gain, n_channels, level) for level, gain in gains.items()}
     steps = tuple(
         replace(step, details=frozen(step.details * factors[level])) if level in factors else step
         for level, step in enumerate(pyramid.steps)
@@ -99,19 +100,19 @@ def band_gains(
         raise OptionError(f"the band runs from {low} to {high}; give the smaller bound first.")
     if levels is not None:
         for level in levels:
-            _as_level(level, pyramid)
+            check_level(level, pyramid)
         sizes: Sequence[float] = range(pyramid.n_levels)
     else:
         sizes = level_spacings(pyramid)[1:].tolist()
     return {level: float(low <= size <= high) for level, size in enumerate(sizes)}
 
 
-def _as_level(level: int, pyramid: Pyramid) -> int:
+def check_level(level: int, pyramid: Pyramid) -> None:
+    """Raise :class:`OptionError` unless the pyramid has details at the level."""
     if not 0 <= level < pyramid.n_levels:
         raise OptionError(
             f"there are no details at level {level}; they are at 0 to {pyramid.n_levels - 1}."
         )
-    return int(level)
 
 
 def _as_gain(gain: float | Sequence[float], n_channels: int, level: int | str) -> FloatArray:

@@ -35,7 +35,7 @@ def merge_map(
     """Return for every vertex of a level its id in the coarser one, odd ones at their target."""
     stays = np.ones(n_vertices, dtype=bool)
     stays[odd] = False
-    position = (np.cumsum(stays) - 1).astype(np.int32)
+    position = np.cumsum(stays, dtype=np.int32) - np.int32(1)
     position[odd] = position[target]
     return position
 

@@ -11,6 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from ._validate import FloatArray, IntArray, as_attributes, as_faces, as_vertices, frozen
 from .errors import MeshError
 
+#: Faces whose areas are worked out together.
+FACES_AT_ONCE = 1 << 14
+
 
 @dataclass(frozen=True, slots=True, init=False)
 class TriangleMesh:
@@ -225,9 +228,13 @@ class TriangleMesh:
 
 
 def _doubled_plan_areas(vertices: FloatArray, faces: IntArray) -> FloatArray:
-    a, b, c = (vertices[faces[:, k], :2] for k in range(3))
-    ab, ac = b - a, c - a
-    return ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+    x, y = np.ascontiguousarray(vertices[:, 0]), np.ascontiguousarray(vertices[:, 1])
+    areas = np.empty(len(faces))
+    for start in range(0, len(faces), FACES_AT_ONCE):  # so that the temporaries stay in the cache
+        block = slice(start, start + FACES_AT_ONCE)
+        a, b, c = faces[block].T
+        areas[block] = (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
+    return areas
 
 
 def _monotonic(values: ArrayLike, n: int, name: str) -> FloatArray:

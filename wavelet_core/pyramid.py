@@ -125,7 +125,8 @@ class Pyramid:
 
     def n_faces(self, level: int) -> int:
         """Return the number of faces of a level."""
-        return len(self._faces_and_ids(level)[0])
+        self._require_level(level)
+        return len(self._faces_of(level))
 
     def vertex_ids(self, level: int) -> IntArray:
         """Return the ids, in the input, of the vertices of a level; ascending."""
@@ -141,7 +142,11 @@ class Pyramid:
             A level that the pyramid does not have.
         """
         self._require_level(level)
-        return next(self.meshes(level))[1]
+        ids = self._ids_by_level(0)
+        for k, coefficients in self._coefficients(ids):
+            if k == level:
+                break
+        return self._assemble(coefficients, ids[level], self._faces_of(level))
 
     def synthesise(self, level: int | None = None) -> TriangleMesh:
         """Return the mesh of a level; by default of the finest, which equals the input."""
@@ -277,9 +282,14 @@ class Pyramid:
             by_level.append(faces)
         return by_level
 
-    def _faces_and_ids(self, level: int) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        self._require_level(level)
-        return self._faces_by_level(level)[-1], self._ids_by_level(level)[level]
+    def _faces_of(self, level: int) -> NDArray[np.int32]:
+        """Faces of one level, without those between."""
+        n_vertices = self.n_vertices(level)
+        position = np.arange(n_vertices, dtype=np.int32)
+        for step in self.steps[level:]:
+            n_vertices += step.n_odd
+            position = position[merge_map(step.odd, step.target, n_vertices)]
+        return merged_faces(self.faces, position)
 
     def _integrals_by_level(self, lowest: int) -> dict[int, FloatArray]:
         integrals = np.ones(self.n_vertices(self.n_levels))
@@ -294,9 +304,9 @@ class Pyramid:
 
     def _coefficients(self, ids: dict[int, NDArray[np.int32]]) -> Iterator[tuple[int, FloatArray]]:
         """Scaling coefficients from level 0 up."""
-        integrals = self._integrals_by_level(0) if self.update == "minimum_norm" else {}
         coefficients = self.coarse
         yield 0, coefficients
+        integrals = self._integrals_by_level(0) if self.update == "minimum_norm" else {}
         for level, step in enumerate(self.steps):
             n_fine = len(ids[level + 1])
             even = even_positions(step.odd, n_fine)

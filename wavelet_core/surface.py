@@ -62,6 +62,12 @@ class SurfaceRules(NamedTuple):
         """Whether a step may break a tolerance that its ranking did not see."""
         return self.max_rms < np.inf or (self.max_error < np.inf and self.with_update)
 
+    def budget_of(self, level: SurfaceLevel) -> float:
+        """Return what the sum of the squared errors may still grow by."""
+        if self.max_rms == np.inf:
+            return np.inf
+        return self.max_rms**2 * level.n_input - level.squared_errors()
+
     def are_kept_by(self, level: SurfaceLevel) -> bool:
         """Whether the errors of all input vertices keep the tolerances."""
         if self.max_rms < np.inf and level.squared_errors() > self.max_rms**2 * level.n_input:
@@ -130,8 +136,7 @@ def _take_step(
     if max_odd <= 0:
         return None
     slots = _candidates(level, rules, cutoff)
-    budget = rules.max_rms**2 * level.n_input - level.squared_errors()
-    odd = level.independent(slots, max_odd, budget)
+    odd = level.independent(slots, max_odd, rules.budget_of(level))
     if len(odd) == 0:
         return None
     cost = level.costs(odd)

@@ -77,6 +77,26 @@ def find_outgoing(start, stop, indptr, star, mesh, n_fans):
             n_fans[vertex] = 1 if n_walked == degree and n_open < 2 else 2
 
 
+# Half-edges of the faces (m,) int64 that live on, renumbered; packed: HalfEdges, filled.
+# position (n,), face_position (n_faces,) int32: where each vertex and face goes
+@njit
+def pack_faces(start, stop, faces, position, face_position, mesh, packed):
+    for k in range(start, stop):
+        for corner in range(3):
+            half_edge = 3 * faces[k] + corner
+            twin = mesh.twin[half_edge]
+            packed.origin[3 * k + corner] = position[mesh.origin[half_edge]]
+            packed.twin[3 * k + corner] = 3 * face_position[twin // 3] + twin % 3 if twin >= 0 else -1
+
+
+# The same for the vertices (n,) int64 that live on
+@njit
+def pack_vertices(start, stop, vertices, face_position, mesh, packed):
+    for k in range(start, stop):
+        outgoing = mesh.outgoing[vertices[k]]
+        packed.outgoing[k] = 3 * face_position[outgoing // 3] + outgoing % 3 if outgoing >= 0 else -1
+
+
 @inlined
 def before(half_edge):
     return half_edge + 2 if half_edge % 3 == 0 else half_edge - 1
@@ -112,31 +132,35 @@ def walk_ring(v, origin, twin, outgoing, ring, spoke):
 
 
 # Do the rings of v and a share only the vertices that stand beside a in the ring of v?
-# ring (size,) int32 starts at a; stamp (n,) int32 holds no value `mark` yet
-@njit
-def meets_link_condition(a, ring, size, n_sides, mesh, stamp, mark):
-    for k in range(size):
+# ring, faces, both int32, hold it from a at `base` on: NO_INDEX where no face follows;
+# stamp (n,) int32 holds no value `mark` yet
+@inlined
+def meets_link_condition(ring, faces, base, size, origin, twin, outgoing, stamp, mark):
+    a = ring[base]
+    n_sides = 0
+    for k in range(base, base + size):
         stamp[ring[k]] = mark
+        n_sides += faces[k] >= 0
+    opening = outgoing[a]
+    half_edge = opening
     n_shared = 0
-    half_edge = mesh.outgoing[a]
     while True:
-        if stamp[mesh.origin[after(half_edge)]] == mark:
-            n_shared += 1
-        last = before(half_edge)
-        half_edge = mesh.twin[last]
+        corner = half_edge % 3
+        following = half_edge - 2 if corner == 2 else half_edge + 1
+        last = half_edge + 2 if corner == 0 else half_edge - 1
+        n_shared += stamp[origin[following]] == mark
+        half_edge = twin[last]
         if half_edge < 0:
-            if stamp[mesh.origin[last]] == mark:
-                n_shared += 1
+            n_shared += stamp[origin[last]] == mark
             break
-        if half_edge == mesh.outgoing[a]:
+        if half_edge == opening:
             break
     return n_shared == (2 if n_sides == size else 1)
 
 
 # Take a face out that has shrunk to the edge between a and `apex`; its other two sides meet.
-@njit
-def close_face(face, apex, mesh):
-    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+@inlined
+def close_face(face, apex, origin, twin, outgoing):
     half_edge = 3 * face
     while origin[half_edge] != apex:
         half_edge += 1
@@ -149,27 +173,27 @@ def close_face(face, apex, mesh):
         outgoing[apex] = outward
 
 
-# Collapse v onto ring[0]; ring, faces (size,) int32 counter-clockwise from there, NO_INDEX where
-# no face follows. Faces drop out of face_lives (m,) bool.
-@njit
-def collapse(v, ring, faces, size, mesh, face_lives):
-    origin, twin = mesh.origin, mesh.twin
-    a = ring[0]
-    for k in range(size):
+# Collapse v onto ring[base]; ring, faces int32 counter-clockwise from there, NO_INDEX where no face
+# follows. Faces drop out of face_lives (m,) bool.
+@inlined
+def collapse(v, ring, faces, base, size, origin, twin, outgoing, face_lives):
+    a = ring[base]
+    for k in range(base, base + size):
         if faces[k] >= 0:
-            for corner in range(3):
-                if origin[3 * faces[k] + corner] == v:
-                    origin[3 * faces[k] + corner] = a
-    for k, apex in ((0, ring[1]), (size - 1, ring[size - 1])):
+            half_edge = 3 * faces[k]
+            while origin[half_edge] != v:
+                half_edge += 1
+            origin[half_edge] = a
+    for k in (base, base + size - 1):
         if faces[k] >= 0:
             face_lives[faces[k]] = False
-            close_face(faces[k], apex, mesh)
-    if face_lives[mesh.outgoing[a] // 3]:
-        return
-    was_outline = twin[mesh.outgoing[a]] < 0
-    half_edge = 3 * faces[1]  # the first face of the new fan
-    while origin[half_edge] != a:
-        half_edge += 1
-    while was_outline and twin[half_edge] >= 0:  # back to where the fan opens
-        half_edge = after(twin[half_edge])
-    mesh.outgoing[a] = half_edge
+            apex = ring[base + 1] if k == base else ring[k]
+            close_face(faces[k], apex, origin, twin, outgoing)
+    if not face_lives[outgoing[a] // 3]:
+        was_outline = twin[outgoing[a]] < 0
+        half_edge = 3 * faces[base + 1]  # the first face of the new fan
+        while origin[half_edge] != a:
+            half_edge += 1
+        while was_outline and twin[half_edge] >= 0:  # back to where the fan opens
+            half_edge = after(twin[half_edge])
+        outgoing[a] = half_edge

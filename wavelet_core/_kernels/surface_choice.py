@@ -13,6 +13,7 @@ TAKEN = 2
 # active (k,) int32; state (n,) int8; cost (n,) float64; key (n,) uint32; wins (k,) bool, filled
 @njit
 def find_cheapest(start, stop, active, mesh, state, cost, key, wins):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     for q in range(start, stop):
         v = active[q]
@@ -20,7 +21,7 @@ def find_cheapest(start, stop, active, mesh, state, cost, key, wins):
         if state[v] != CANDIDATE:
             continue
         wins[q] = True
-        size, _ = walk_ring(v, mesh.origin, mesh.twin, mesh.outgoing, ring, spoke)
+        size, _ = walk_ring(v, origin, twin, outgoing, ring, spoke)
         for k in range(size):
             u = ring[k]
             if state[u] == CANDIDATE and (
@@ -33,11 +34,12 @@ def find_cheapest(start, stop, active, mesh, state, cost, key, wins):
 # Take the winners, rule their neighbours out
 @njit
 def take_cheapest(start, stop, active, wins, mesh, state):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     for q in range(start, stop):
         if not wins[q]:
             continue
-        size, _ = walk_ring(active[q], mesh.origin, mesh.twin, mesh.outgoing, ring, spoke)
+        size, _ = walk_ring(active[q], origin, twin, outgoing, ring, spoke)
         for k in range(size):
             state[ring[k]] = 0
         state[active[q]] = TAKEN
@@ -46,17 +48,19 @@ def take_cheapest(start, stop, active, wins, mesh, state):
 # size (n_odd,) int64, filled
 @njit
 def measure_rings(start, stop, odd, mesh, size):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     for row in range(start, stop):
-        size[row] = walk_ring(odd[row], mesh.origin, mesh.twin, mesh.outgoing, ring, spoke)[0]
+        size[row] = walk_ring(odd[row], origin, twin, outgoing, ring, spoke)[0]
 
 
 # ring, ring_faces (indptr[-1],) int32, filled: from the target on, NO_INDEX where no face follows
 @njit
 def record_rings(start, stop, odd, target, mesh, indptr, ring, ring_faces):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     around, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     for row in range(start, stop):
-        size, n_sides = walk_ring(odd[row], mesh.origin, mesh.twin, mesh.outgoing, around, spoke)
+        size, n_sides = walk_ring(odd[row], origin, twin, outgoing, around, spoke)
         j = 0
         while around[j] != target[row]:
             j += 1
@@ -70,16 +74,12 @@ def record_rings(start, stop, odd, target, mesh, indptr, ring, ring_faces):
 # is_taken (n_odd,) bool, filled; stamp (n,) int32, zeros
 @njit
 def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, stamp, is_taken):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     for row in range(odd.shape[0]):
-        base, end = indptr[row], indptr[row + 1]
-        size = end - base
-        n_sides = 0
-        for k in range(base, end):
-            if ring_faces[k] >= 0:
-                n_sides += 1
+        base, size = indptr[row], indptr[row + 1] - indptr[row]
         is_taken[row] = meets_link_condition(
-            ring[base], ring[base:end], size, n_sides, mesh, stamp, row + 1
+            ring, ring_faces, base, size, origin, twin, outgoing, stamp, row + 1
         )
         if is_taken[row]:
-            collapse(odd[row], ring[base:end], ring_faces[base:end], size, mesh, face_lives)
+            collapse(odd[row], ring, ring_faces, base, size, origin, twin, outgoing, face_lives)
             vertex_lives[odd[row]] = False

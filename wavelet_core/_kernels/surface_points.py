@@ -72,11 +72,12 @@ def locate(n_wedges, bx, by, x, y, hint):
 # number of points that each collapse moves, its own vertex included
 @njit
 def count_points(start, stop, indptr, ring_faces, points, size):
+    n_points = points.n_points
     for row in range(start, stop):
         size[row] = 1
         for k in range(indptr[row], indptr[row + 1]):
             if ring_faces[k] >= 0:
-                size[row] += points.n_points[ring_faces[k]]
+                size[row] += n_points[ring_faces[k]]
 
 
 # Move the points of each collapsed star, and its vertex, to the faces that now cover it.
@@ -87,7 +88,10 @@ def hand_over(
     start, stop, odd, indptr, ring, ring_faces, surface, points, first, face_changed,
     corners, weights, details,
 ):  # fmt: skip
-    n_channels = surface.z.shape[1]
+    vertex_x, vertex_y, vertex_z, measured = surface.x, surface.y, surface.z, surface.measured
+    start_of, n_points = points.start, points.n_points
+    point_x, point_y, point_z = points.x, points.y, points.z
+    n_channels = vertex_z.shape[1]
     bx, by = np.empty(MAX_RING), np.empty(MAX_RING)
     cursor = np.empty(MAX_RING, np.int64)
     wedge = np.empty(256, np.int32)
@@ -96,15 +100,15 @@ def hand_over(
         size = indptr[row + 1] - base
         n_wedges = size - 2
         a = ring[base]
-        ax, ay = surface.x[a], surface.y[a]
+        ax, ay = vertex_x[a], vertex_y[a]
         if first[row + 1] - first[row] > wedge.shape[0]:
             wedge = np.empty(2 * (first[row + 1] - first[row]), np.int32)
         for t in range(size - 1):
-            bx[t] = surface.x[ring[base + 1 + t]] - ax
-            by[t] = surface.y[ring[base + 1 + t]] - ay
+            bx[t] = vertex_x[ring[base + 1 + t]] - ax
+            by[t] = vertex_y[ring[base + 1 + t]] - ay
             cursor[t] = 0
 
-        x, y = surface.x[v] - ax, surface.y[v] - ay
+        x, y = vertex_x[v] - ax, vertex_y[v] - ay
         t = locate(n_wedges, bx, by, x, y, 0)
         wedge[0] = t
         cursor[t] += 1
@@ -118,8 +122,8 @@ def hand_over(
         corners[row, 0], corners[row, 1], corners[row, 2] = a, b, c
         weights[row, 0], weights[row, 1], weights[row, 2] = at_a, at_b, at_c
         for i in range(n_channels):
-            details[row, i] = surface.z[v, i] - (
-                at_a * surface.z[a, i] + at_b * surface.z[b, i] + at_c * surface.z[c, i]
+            details[row, i] = vertex_z[v, i] - (
+                at_a * vertex_z[a, i] + at_b * vertex_z[b, i] + at_c * vertex_z[c, i]
             )
 
         n_found = 1
@@ -128,8 +132,8 @@ def hand_over(
             if face < 0:
                 continue
             hint = min(max(k - 1, 0), n_wedges - 1)
-            for p in range(points.start[face], points.start[face] + points.n_points[face]):
-                t = locate(n_wedges, bx, by, points.x[p] - ax, points.y[p] - ay, hint)
+            for p in range(start_of[face], start_of[face] + n_points[face]):
+                t = locate(n_wedges, bx, by, point_x[p] - ax, point_y[p] - ay, hint)
                 wedge[n_found] = t
                 cursor[t] += 1
                 n_found += 1
@@ -141,22 +145,22 @@ def hand_over(
             position += n_here
         p = cursor[wedge[0]]
         cursor[wedge[0]] += 1
-        points.x[p], points.y[p] = surface.x[v], surface.y[v]
+        point_x[p], point_y[p] = vertex_x[v], vertex_y[v]
         for i in range(n_channels):
-            points.z[p, i] = surface.measured[v, i]
+            point_z[p, i] = measured[v, i]
         n_found = 1
         for k in range(size):
             face = ring_faces[base + k]
             if face < 0:
                 continue
-            for q in range(points.start[face], points.start[face] + points.n_points[face]):
+            for q in range(start_of[face], start_of[face] + n_points[face]):
                 t = wedge[n_found]
                 n_found += 1
                 p = cursor[t]
                 cursor[t] += 1
-                points.x[p], points.y[p] = points.x[q], points.y[q]
+                point_x[p], point_y[p] = point_x[q], point_y[q]
                 for i in range(n_channels):
-                    points.z[p, i] = points.z[q, i]
+                    point_z[p, i] = point_z[q, i]
 
         position = first[row]
         for k in range(size):
@@ -164,24 +168,25 @@ def hand_over(
             if face < 0:
                 continue
             if 1 <= k <= n_wedges:
-                points.start[face] = position
-                points.n_points[face] = cursor[k - 1] - position
+                start_of[face] = position
+                n_points[face] = cursor[k - 1] - position
                 position = cursor[k - 1]
                 face_changed[face] = True
             else:
-                points.n_points[face] = 0
+                n_points[face] = 0
 
 
 # Copy the points of the given faces, in their order, to the front of other arrays.
 # faces (n,) int32; first (n + 1,) int64, where each face's points go
 @njit
 def copy_points(start, stop, faces, first, points, x, y, z):
+    start_of, point_x, point_y, point_z = points.start, points.x, points.y, points.z
     for k in range(start, stop):
-        p = points.start[faces[k]]
+        p = start_of[faces[k]]
         for q in range(first[k], first[k + 1]):
-            x[q], y[q] = points.x[p], points.y[p]
+            x[q], y[q] = point_x[p], point_y[p]
             for i in range(z.shape[1]):
-                z[q, i] = points.z[p, i]
+                z[q, i] = point_z[p, i]
             p += 1
 
 
@@ -194,14 +199,17 @@ def sum_over_faces(
     start, stop, mesh, face_lives, face_changed, z_changed, surface, points,
     squared, squared_z, largest_z, moments, is_stale, is_new, has_moved,
 ):  # fmt: skip
-    n_channels = surface.z.shape[1]
+    origin, x, y, z = mesh.origin, surface.x, surface.y, surface.z
+    start_of, n_points = points.start, points.n_points
+    point_x, point_y, point_z = points.x, points.y, points.z
+    n_channels = z.shape[1]
     slope, weight = moments.slope, moments.weight
     with_slopes, with_z = weight.shape[0] > 0, squared_z.shape[0] > 0
     slope_sums = np.empty((3, n_channels))
     for face in range(start, stop):
         if not face_lives[face]:
             continue
-        a, b, c = mesh.origin[3 * face], mesh.origin[3 * face + 1], mesh.origin[3 * face + 2]
+        a, b, c = origin[3 * face], origin[3 * face + 1], origin[3 * face + 2]
         if not (face_changed[face] or z_changed[a] or z_changed[b] or z_changed[c]):
             continue
         if face_changed[face]:
@@ -212,20 +220,20 @@ def sum_over_faces(
         sum_all, sum_z, largest = 0.0, 0.0, 0.0
         weight_a, weight_b, weight_c = 0.0, 0.0, 0.0
         slope_sums[:] = 0.0
-        if points.n_points[face] > 0:
-            ax, ay = surface.x[a], surface.y[a]
-            bx, by = surface.x[b] - ax, surface.y[b] - ay
-            cx, cy = surface.x[c] - ax, surface.y[c] - ay
+        if n_points[face] > 0:
+            ax, ay = x[a], y[a]
+            bx, by = x[b] - ax, y[b] - ay
+            cx, cy = x[c] - ax, y[c] - ay
             per_area = 1.0 / (bx * cy - by * cx)
-            for p in range(points.start[face], points.start[face] + points.n_points[face]):
-                x, y = points.x[p] - ax, points.y[p] - ay
-                at_b = (x * cy - y * cx) * per_area
-                at_c = (bx * y - by * x) * per_area
+            for p in range(start_of[face], start_of[face] + n_points[face]):
+                px, py = point_x[p] - ax, point_y[p] - ay
+                at_b = (px * cy - py * cx) * per_area
+                at_c = (bx * py - by * px) * per_area
                 at_a = 1.0 - at_b - at_c
                 for i in range(n_channels):
                     error = (
-                        at_a * surface.z[a, i] + at_b * surface.z[b, i] + at_c * surface.z[c, i]
-                    ) - points.z[p, i]
+                        at_a * z[a, i] + at_b * z[b, i] + at_c * z[c, i]
+                    ) - point_z[p, i]
                     sum_all += error * error
                     if i == 0:
                         sum_z += error * error
@@ -253,25 +261,27 @@ def sum_over_faces(
 # Moments of the star of each vertex with has_moved (n,) bool, which is reset.
 @njit
 def sum_over_stars(start, stop, mesh, vertex_lives, has_moved, surface, moments):
-    n_channels = surface.z.shape[1]
+    twin, outgoing = mesh.twin, mesh.outgoing
+    z, measured = surface.z, surface.measured
+    n_channels = z.shape[1]
     slope, weight = moments.slope, moments.weight
     vertex_slope, vertex_weight = moments.vertex_slope, moments.vertex_weight
     for v in range(start, stop):
         if not has_moved[v]:
             continue
         has_moved[v] = False
-        if not vertex_lives[v] or mesh.outgoing[v] < 0:
+        if not vertex_lives[v] or outgoing[v] < 0:
             continue
         vertex_weight[v] = 1.0
         for i in range(n_channels):
-            vertex_slope[v, i] = surface.z[v, i] - surface.measured[v, i]
-        half_edge = mesh.outgoing[v]
+            vertex_slope[v, i] = z[v, i] - measured[v, i]
+        half_edge = outgoing[v]
         while half_edge >= 0:
             vertex_weight[v] += weight[half_edge]
             for i in range(n_channels):
                 vertex_slope[v, i] += slope[half_edge, i]
-            half_edge = mesh.twin[before(half_edge)]
-            if half_edge == mesh.outgoing[v]:
+            half_edge = twin[before(half_edge)]
+            if half_edge == outgoing[v]:
                 break
 
 
