@@ -45,7 +45,7 @@ CHEAPEST_SHARE = 16
 #: Errors below this part of the range of z are rounding.
 ROUNDING = 1e-9
 #: Arrays are packed when no more than this share of them is in use.
-PACKED_SHARE = 0.5
+PACKED_SHARE = 0.7
 
 
 class SurfaceLevel:
@@ -92,6 +92,7 @@ class SurfaceLevel:
         )
         self._n_used = 0
         self.n_input = n_vertices
+        self._dearest = 0.0
         self._noise = (ROUNDING * float(np.ptp(heights[:, 0]))) ** 2
         self.n_vertices = n_vertices
         self._ids = np.arange(n_vertices, dtype=np.int32)
@@ -168,7 +169,7 @@ class SurfaceLevel:
         """Return the slots of the vertices that may be odd: the cheapest ``fraction`` at most.
 
         None of them costs more than ``cost_ratio`` times what the cheapest part of those
-        (1 / CHEAPEST_SHARE) does.
+        (1 / CHEAPEST_SHARE) does, or than what a level before was allowed to take.
         """
         known = (
             self._vertex_lives & ~self._is_stale & (self._cost <= cutoff) & np.isfinite(self._cost)
@@ -182,7 +183,8 @@ class SurfaceLevel:
         places = [n_cheapest - 1, min(n_most, len(slots)) - 1]
         cheap, dear = np.partition(cost, places)[places]
         if cost_ratio < np.inf:
-            dear = min(dear, max(cost_ratio * cheap, self._noise))
+            self._dearest = max(cost_ratio * cheap, self._noise, self._dearest)
+            dear = min(dear, self._dearest)
         return slots[cost <= dear]
 
     def independent(

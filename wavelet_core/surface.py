@@ -25,7 +25,7 @@ NORMS = ("rms", "max")
 #: the number of levels is given, each level takes its full share.
 COST_RATIO = 8.0
 #: Costs beyond this multiple of the last level's dearest are not worked out.
-FORESIGHT = 4.0
+FORESIGHT = 2.0
 #: With an update and a tolerance, how often a level is tried with fewer vertices.
 N_ATTEMPTS = 6
 #: An analysis by tolerance ends when a level takes less than this part of the vertices.
