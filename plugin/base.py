@@ -106,8 +106,20 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         if refusal:
             raise QgsProcessingException(refusal)
         install_finder()
+        from wavelet_core.errors import WaveletError
+
+        from .output_check import check_outputs
+
+        try:
+            check_outputs(self, parameters, context)
+        except WaveletError as error:
+            raise QgsProcessingException(self.in_words(error)) from error
         self.prepare(parameters, context, feedback)
         return True
+
+    def in_words(self, message):
+        """Return a message of the shared layers in the words of this algorithm's dialog."""
+        return for_dialog(message, has_crs=self.parameterDefinition("CRS") is not None)
 
     def prepare(self, parameters, context, feedback):
         """Take from layers, in their own thread, what `work` needs of them."""
@@ -120,13 +132,13 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         from wavelet_core.errors import Cancelled, WaveletError
 
         try:
-            with shown_in(feedback):
+            with shown_in(feedback, self.in_words):
                 return self.work(parameters, context, feedback)
         except Cancelled:
             feedback.pushInfo(self.tr("Cancelled; nothing was written."))
             return {}
         except WaveletError as error:
-            raise QgsProcessingException(for_dialog(error)) from error
+            raise QgsProcessingException(self.in_words(error)) from error
         except MemoryError as error:
             raise QgsProcessingException(
                 self.tr(

@@ -5,8 +5,6 @@ from __future__ import annotations
 from osgeo import osr
 from qgis.core import QgsCoordinateReferenceSystem
 
-from .gdal_errors import without_exceptions
-
 
 def progress(feedback, start: float = 0.0, stop: float = 1.0):
     """Return a progress function for the core that drives a part of QGIS's bar.
@@ -51,21 +49,20 @@ def coordinate_system(crs: QgsCoordinateReferenceSystem):
     if not crs.isValid():
         return CoordinateSystem()
     wkt = crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL)
-    with without_exceptions(osr):
-        system = osr.SpatialReference()
-        system.ImportFromWkt(wkt)
-        kind, unit = "unknown", 1.0
-        if system.IsGeographic():
-            kind, unit = "geographic", system.GetAngularUnits()
-        elif system.IsProjected():
-            kind, unit = "projected", system.GetLinearUnits()
-        vertical_unit = known_unit(system.GetAttrValue("VERT_CS|UNIT"))
+    name = crs.description() or crs.authid()
+    system = _spatial_reference(wkt)
+    if system.IsGeographic():
+        kind, unit = "geographic", system.GetAngularUnits()
+    elif system.IsProjected():
+        kind, unit = "projected", system.GetLinearUnits()
+    else:  # a local one has no ellipsoid to ask for
+        return CoordinateSystem(wkt=wkt, name=name)
     return CoordinateSystem(
         wkt=wkt,
-        name=crs.description() or crs.authid(),
+        name=name,
         kind=kind,
         horizontal_unit=unit,
-        vertical_unit=vertical_unit,
+        vertical_unit=known_unit(system.GetAttrValue("VERT_CS|UNIT")),
         semi_major=system.GetSemiMajor(),
         inverse_flattening=system.GetInvFlattening(),
     )
@@ -73,10 +70,17 @@ def coordinate_system(crs: QgsCoordinateReferenceSystem):
 
 def is_geocentric(wkt: str) -> bool:
     """Return whether a CRS has its origin in the middle of the earth."""
-    with without_exceptions(osr):
+    return bool(_spatial_reference(wkt).IsGeocentric())
+
+
+def _spatial_reference(wkt: str):
+    """Return GDAL's view of a CRS; one that it does not understand is of no kind."""
+    try:
         system = osr.SpatialReference()
         system.ImportFromWkt(wkt)
-        return bool(system.IsGeocentric())
+    except RuntimeError:  # only where another plugin has told GDAL to raise
+        return osr.SpatialReference()
+    return system
 
 
 def known_unit(name: str | None) -> str | None:

@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 
 
-def without_exceptions(module):
-    """Return a context in which ``gdal``, ``osr`` or ``ogr`` returns None rather than raise.
+@contextmanager
+def without_exceptions(module, refusal):
+    """Keep ``gdal``, ``osr`` or ``ogr`` from raising in the block: they return None or a code.
 
-    Which of the two GDAL does is a setting of the whole process that another plugin may have
-    changed, and that must not change for others. Before GDAL 3.7 there is no such context, and
-    returning None is the default that nearly all plugins count on.
+    Which of the two GDAL does is a setting of the whole process, which Processing and other plugins
+    change, and that must not change for them. Before GDAL 3.7 there is no context that changes it
+    for a while; there, what GDAL raises is turned into ``refusal(reason)``.
+
+    Parameters
+    ----------
+    module : module
+        ``osgeo.gdal``, ``osgeo.osr`` or ``osgeo.ogr``.
+    refusal : callable
+        Takes GDAL's reason and returns the exception for the user.
     """
     manager = getattr(module, "ExceptionMgr", None)
-    return manager(useExceptions=False) if manager else nullcontext()
+    with manager(useExceptions=False) if manager else nullcontext():
+        try:
+            yield
+        except RuntimeError as error:
+            if manager:
+                raise
+            raise refusal(str(error)) from error
+
+
+def opened(gdal, path: str):
+    """Return the dataset at a path, or None where GDAL cannot open it."""
+    try:
+        return gdal.Open(path)
+    except RuntimeError:
+        return None

@@ -8,6 +8,7 @@ CRS entry and the spatial index, so that the file is what it would be.
 from __future__ import annotations
 
 import struct
+from functools import partial
 
 import numpy as np
 from osgeo import gdal, ogr, osr
@@ -52,7 +53,12 @@ def add_layers(path, layers, wkt: str | None, feedback) -> None:
 
 
 def _create(path, layer, wkt) -> None:
-    with without_exceptions(gdal), without_exceptions(ogr), without_exceptions(osr):
+    refusal = partial(_failure, path, layer)
+    with (
+        without_exceptions(gdal, refusal),
+        without_exceptions(ogr, refusal),
+        without_exceptions(osr, refusal),
+    ):
         dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)
         system = None
         if wkt:
@@ -69,7 +75,7 @@ def _create(path, layer, wkt) -> None:
             layer.name, system, _GEOMETRY_TYPES[layer.geometry_type], options
         )
         if not table:
-            raise _failure(path, layer)
+            raise refusal(gdal.GetLastErrorMsg())
         for name, column in layer.fields.items():
             table.CreateField(ogr.FieldDefn(name, _field_type(column)))
         table = dataset = None  # closes the file
@@ -110,10 +116,11 @@ def _quoted(name: str) -> str:
 
 
 def _index(path, layer) -> None:
-    with without_exceptions(gdal), without_exceptions(ogr):
+    refusal = partial(_failure, path, layer)
+    with without_exceptions(gdal, refusal), without_exceptions(ogr, refusal):
         dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)
         if dataset is None:
-            raise _failure(path, layer)
+            raise refusal(gdal.GetLastErrorMsg())
         dataset.ExecuteSQL(f"SELECT CreateSpatialIndex('{layer.name}', 'geom')")
         dataset = None  # closes the file
 
@@ -135,9 +142,9 @@ def _field_type(column):
     return ogr.OFTInteger64 if column.dtype.itemsize > 4 else ogr.OFTInteger
 
 
-def _failure(path, layer):
+def _failure(path, layer, reason):
     return QgsProcessingException(
         tr("{}: layer {} cannot be written ({}); check the disk and the name.").format(
-            path, layer.name, gdal.GetLastErrorMsg()
+            path, layer.name, reason
         )
     )

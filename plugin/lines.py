@@ -6,15 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 from qgis.core import (
-    QgsFeatureRequest,
     QgsGeometry,
     QgsPoint,
     QgsProcessingException,
     QgsWkbTypes,
 )
 
-from .bridge import require_running
 from .translation import tr
+from .vectors import features_in
 
 
 class Constraints(NamedTuple):
@@ -41,6 +40,14 @@ class Constraints(NamedTuple):
             count=len(positions),
         )
 
+    def meets(self, positions) -> bool:
+        """Return whether a breakline reaches into the rectangle around positions."""
+        low, high = positions[:, :2].min(axis=0), positions[:, :2].max(axis=0)
+        return any(
+            (line[:, :2].min(axis=0) <= high).all() and (line[:, :2].max(axis=0) >= low).all()
+            for line in self.breaklines
+        )
+
 
 def read_constraints(
     breakline_source, clip_source, crs, transform_context, feedback
@@ -61,7 +68,9 @@ def read_constraints(
         clip = QgsGeometry.unaryUnion(_geometries(clip_source, crs, transform_context, feedback))
         if clip.isEmpty():
             raise QgsProcessingException(
-                tr("{}: there is no polygon to clip by.").format(clip_source.sourceName())
+                tr(
+                    "{}: there is no polygon to clip by; check the layer, its filter and selection."
+                ).format(clip_source.sourceName())
             )
     heights = _heights(lines) if lines and QgsWkbTypes.hasZ(breakline_source.wkbType()) else None
     noded = QgsGeometry.unaryUnion(lines) if lines else QgsGeometry()
@@ -75,6 +84,12 @@ def read_constraints(
         rings = [piece for piece in pieces if on_ring.contains(piece)]
     else:
         breaklines = [QgsGeometry(part.clone()) for part in noded.constParts()]
+    if breakline_source is not None and not breaklines:
+        feedback.pushWarning(
+            tr("{}: there is no breakline here; the TIN is made without.").format(
+                breakline_source.sourceName()
+            )
+        )
     return Constraints(
         [_array(line, heights) for line in breaklines],
         [_array(ring, heights if lines else None) for ring in rings],
@@ -85,15 +100,8 @@ def read_constraints(
 def _geometries(source, crs, transform_context, feedback) -> list:
     if source is None:
         return []
-    request = QgsFeatureRequest()
-    if source.sourceCrs().isValid() and crs.isValid() and source.sourceCrs() != crs:
-        request.setDestinationCrs(crs, transform_context)
-    geometries = []
-    for feature in source.getFeatures(request):
-        require_running(feedback)
-        if feature.hasGeometry():
-            geometries.append(QgsGeometry(feature.geometry()))
-    return geometries
+    features = features_in(source, crs, transform_context, feedback)
+    return [QgsGeometry(feature.geometry()) for feature in features]
 
 
 def _rings(clip) -> list:

@@ -48,16 +48,6 @@ def add_mesh_parameter(algorithm, description) -> None:
     )
 
 
-def mesh_refusal(algorithm, parameters, context) -> str | None:
-    """Return why MESH cannot be written, before anything is started, or None when it can."""
-    path = algorithm.parameterAsFileOutput(parameters, "MESH", context)
-    if not path or _suffix(path) in FORMATS:
-        return None
-    return tr("{}: a mesh is written as {}; end its name in one of these.").format(
-        path, ", ".join(FORMATS)
-    )
-
-
 def mesh_packages(algorithm, parameters, context) -> tuple[dependencies.Package, ...]:
     """Return what the format of MESH needs beyond numpy."""
     path = algorithm.parameterAsFileOutput(parameters, "MESH", context)

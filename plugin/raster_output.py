@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 
 import numpy as np
 from osgeo import gdal
@@ -33,7 +34,8 @@ def write_dem(path: str, dem, crs, feedback) -> None:
     from wavelet_gis.atomic import new_file
 
     driver_name = QgsRasterFileWriter.driverForExtension(os.path.splitext(path)[1].lstrip("."))
-    with new_file(path, overwrite=True) as scratch, without_exceptions(gdal):
+    refusal = partial(_unwritten, path)
+    with new_file(path, overwrite=True) as scratch, without_exceptions(gdal, refusal):
         options = _creation_options(dem) if driver_name == "GTiff" else []
         first = gdal.GetDriverByName("GTiff" if driver_name == "GTiff" else "MEM")
         last = gdal.GetDriverByName(driver_name) if driver_name else None
@@ -54,7 +56,7 @@ def write_dem(path: str, dem, crs, feedback) -> None:
             copy = None
         dataset = None  # closes the file
         if not is_written:
-            raise _unwritten(path)
+            raise refusal(gdal.GetLastErrorMsg())
 
 
 def write_bands(path: str, bands, crs, feedback) -> None:
@@ -72,13 +74,14 @@ def write_bands(path: str, bands, crs, feedback) -> None:
     dtype = bands.values.dtype.newbyteorder("<")
     predictor = 3 if dtype.kind == "f" else 2
     options = ["COMPRESS=DEFLATE", f"PREDICTOR={predictor}", "TILED=YES", "BIGTIFF=IF_SAFER"]
-    with new_file(path, overwrite=True) as scratch, without_exceptions(gdal):
+    refusal = partial(_unwritten, path)
+    with new_file(path, overwrite=True) as scratch, without_exceptions(gdal, refusal):
         driver = gdal.GetDriverByName("GTiff")
         dataset = driver.Create(
             str(scratch), n_columns, n_rows, n_bands, GDAL_TYPES[dtype.str], options
         )
         if dataset is None:
-            raise _unwritten(path)
+            raise refusal(gdal.GetLastErrorMsg())
         _georeference(dataset, bands.geometry, crs)
         is_written = True
         for k in range(n_bands):
@@ -88,7 +91,7 @@ def write_bands(path: str, bands, crs, feedback) -> None:
             is_written &= _write_strips(band, bands.values[k], feedback)
         band = dataset = None  # closes the file
         if not is_written:
-            raise _unwritten(path)
+            raise refusal(gdal.GetLastErrorMsg())
 
 
 def _fill(dataset, dem, crs, feedback) -> bool:
@@ -124,10 +127,10 @@ def _write_strips(band, values, feedback) -> bool:
     return True
 
 
-def _unwritten(path: str):
+def _unwritten(path: str, reason: str):
     return QgsProcessingException(
         tr("{}: GDAL could not write this raster ({}); check the disk and the name.").format(
-            path, gdal.GetLastErrorMsg()
+            path, reason
         )
     )
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from qgis.core import (
     QgsRasterRange,
 )
 
-from .gdal_errors import without_exceptions
+from .gdal_errors import opened, without_exceptions
 from .translation import tr
 
 #: Cells read or written between two looks at the cancel button.
@@ -112,8 +113,8 @@ class RasterInput:
 
         if self.path is None:
             return None
-        with without_exceptions(gdal):
-            dataset = gdal.Open(self.path)
+        with without_exceptions(gdal, partial(_unreadable, self)):
+            dataset = opened(gdal, self.path)
             return known_unit(dataset.GetRasterBand(self.band).GetUnitType()) if dataset else None
 
 
@@ -123,12 +124,19 @@ def read_dem(raster: RasterInput, feedback):
     Raises
     ------
     QgsProcessingException
-        A band of complex numbers, or a source that cannot be read.
+        No such band, a band of complex numbers, or a source that cannot be read.
     Cancelled
     """
     dem = None
+    n_bands = raster.provider.bandCount()
+    if not 1 <= raster.band <= n_bands:
+        raise QgsProcessingException(
+            tr("{}: there is no band {}; the raster has {}.").format(
+                raster.name, raster.band, n_bands
+            )
+        )
     if raster.path is not None:
-        with without_exceptions(gdal):
+        with without_exceptions(gdal, partial(_unreadable, raster)):
             dem = _read_with_gdal(raster, feedback)
     if dem is None:
         dem = _read_with_qgis(raster, feedback)
@@ -139,7 +147,7 @@ def _read_with_gdal(raster: RasterInput, feedback):
     """Return the ``Dem``, or None where GDAL cannot open what its provider opened."""
     from wavelet_gis.dem import Dem, GridGeometry
 
-    dataset = gdal.Open(raster.path)
+    dataset = opened(gdal, raster.path)
     if dataset is None or dataset.RasterCount < raster.band:
         return None
     band = dataset.GetRasterBand(raster.band)
@@ -234,11 +242,7 @@ def strips(n_rows: int, n_columns: int, feedback):
 
 def _array(raw, dtype, n_columns: int, raster: RasterInput):
     if raw is None:
-        raise QgsProcessingException(
-            tr("{}: the raster cannot be read ({}); the file is damaged, get it again.").format(
-                raster.name, gdal.GetLastErrorMsg()
-            )
-        )
+        raise _unreadable(raster, gdal.GetLastErrorMsg())
     return np.frombuffer(raw, dtype=dtype).reshape(-1, n_columns)
 
 
@@ -278,6 +282,14 @@ def _closed_ends(bounds) -> tuple[bool, bool]:
     kinds = QgsRasterRange.BoundsType
     has_low = bounds in (kinds.IncludeMinAndMax, kinds.IncludeMin)
     return has_low, bounds in (kinds.IncludeMinAndMax, kinds.IncludeMax)
+
+
+def _unreadable(raster: RasterInput, reason: str):
+    return QgsProcessingException(
+        tr("{}: the raster cannot be read ({}); the file is damaged, get it again.").format(
+            raster.name, reason
+        )
+    )
 
 
 def _unusable_type(raster: RasterInput, type_name: str):

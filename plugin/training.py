@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from qgis.core import QgsFeatureRequest, QgsGeometry, QgsPoint, QgsProcessingException
+from qgis.core import QgsGeometry, QgsPoint, QgsProcessingException
 
-from .bridge import require_running
 from .translation import tr
+from .vectors import features_in
 
 #: Label of vertices outside all areas.
 NOT_KNOWN = -1
@@ -33,15 +33,9 @@ def labels_inside(source, field, positions, crs, transform_context, feedback) ->
         A class that is no such number.
     """
     index = source.fields().lookupField(field)
-    request = QgsFeatureRequest()
-    if source.sourceCrs().isValid() and crs.isValid() and source.sourceCrs() != crs:
-        request.setDestinationCrs(crs, transform_context)
     labels = np.full(len(positions), NOT_KNOWN, dtype=np.int64)
     x, y = positions[:, 0], positions[:, 1]
-    for feature in source.getFeatures(request):
-        require_running(feedback)
-        if not feature.hasGeometry():
-            continue
+    for feature in features_in(source, crs, transform_context, feedback):
         label = _label(feature, index, field)
         geometry = QgsGeometry(feature.geometry())
         box = geometry.boundingBox()

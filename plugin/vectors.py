@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from qgis.core import (
     QgsFeature,
+    QgsFeatureRequest,
     QgsFeatureSink,
     QgsField,
     QgsFields,
@@ -106,6 +107,47 @@ def read_triangles(source, feedback) -> np.ndarray:
                 )
             corners.append([(p.x(), p.y(), p.z()) for p in ring.points()[:3]])
     return np.array(corners, dtype=np.float64).reshape(len(corners), 3, 3)
+
+
+def features_in(source, crs, transform_context, feedback):
+    """Yield the features of a source that have a geometry, in a CRS.
+
+    Parameters
+    ----------
+    source : QgsProcessingFeatureSource
+    crs : QgsCoordinateReferenceSystem
+        That of the terrain. Where it or that of the source is missing, coordinates are taken as
+        they are, with a warning.
+    transform_context : QgsCoordinateTransformContext
+    feedback : QgsProcessingFeedback
+    """
+    own, failed = source.sourceCrs(), []
+    request = QgsFeatureRequest()
+    if own.isValid() != crs.isValid():
+        feedback.pushWarning(
+            tr(
+                "{}: of this layer and the terrain only one has a CRS, so their coordinates are "
+                "taken to be alike (assign the CRS that is missing)"
+            ).format(source.sourceName())
+        )
+    elif own != crs:
+        request.setDestinationCrs(crs, transform_context)
+        request.setTransformErrorCallback(lambda feature: failed.append(feature.id()))
+    for feature in source.getFeatures(request):
+        require_running(feedback)
+        if not feature.hasGeometry():
+            continue
+        if feature.geometry().boundingBox().isFinite():
+            yield feature
+        else:
+            failed.append(feature.id())
+    if failed:
+        feedback.pushWarning(
+            tr(
+                "{}: what cannot be brought into the CRS of the terrain is left out (features: "
+                "{}); check the CRS of the layer"
+            ).format(source.sourceName(), len(failed))
+        )
 
 
 def fields_of(layer) -> QgsFields:

@@ -6,15 +6,15 @@ import threading
 import warnings
 from contextlib import contextmanager
 
-from .wording import for_dialog
-
 _feedbacks = threading.local()
 _show_before = None
 
 
 @contextmanager
-def shown_in(feedback):
+def shown_in(feedback, wording):
     """Show the warnings of ``wavelet_gis`` that this thread raises inside the block in its log.
+
+    ``wording`` takes a warning and returns what to show.
 
     QGIS runs algorithms in several threads, so Python's own ``catch_warnings``, which swaps the
     handler of the whole process, will not do: one handler is installed, once, and looks up the
@@ -22,7 +22,7 @@ def shown_in(feedback):
     """
     _install()
     outer = getattr(_feedbacks, "current", None)
-    _feedbacks.current = feedback
+    _feedbacks.current = (feedback, wording)
     try:
         yield
     finally:
@@ -52,10 +52,10 @@ def _show(message, category, filename, lineno, file=None, line=None):
     from wavelet_core.errors import SlowFallbackWarning
     from wavelet_gis.errors import TerrainWarning
 
-    feedback = getattr(_feedbacks, "current", None)
+    feedback, wording = getattr(_feedbacks, "current", None) or (None, None)
     if feedback is not None and issubclass(category, SlowFallbackWarning):
         return  # told already, with the remedy for this platform
     if feedback is not None and issubclass(category, TerrainWarning):
-        feedback.pushWarning(for_dialog(message))
+        feedback.pushWarning(wording(message))
     elif _show_before is not None:
         _show_before(message, category, filename, lineno, file, line)

@@ -117,3 +117,27 @@ def run(qgis):
         )
 
     return run_algorithm
+
+
+#: What QGIS says around a message of ours.
+FROM_QGIS = ("", "Unable to execute algorithm", "There were errors executing the algorithm.")
+
+
+@pytest.fixture
+def refused(run):
+    """Return a function that runs what must be refused and returns the one line in the log."""
+    from qgis.core import QgsProcessingException
+    from qgis_layers import Log
+
+    def run_refused(name, parameters, **options):
+        log = Log()
+        with pytest.raises(QgsProcessingException) as caught:
+            run(name, parameters, feedback=log, **options)
+        told = "\n".join([str(caught.value), *log.errors])
+        assert "Traceback" not in told
+        assert " --" not in told
+        lines = {line for line in told.splitlines() if line not in FROM_QGIS}
+        assert len(lines) == 1, lines
+        return lines.pop()
+
+    return run_refused

@@ -16,7 +16,14 @@ from wavelet_gis.point_source import PointSource, cloud_mesh
 from wavelet_gis.points import PointCloud, cloud_bounds
 from wavelet_gis.record import PyramidRecord
 
-__all__ = ["CLOUD_SUFFIXES", "Terrain", "open_terrain", "terrain_of_cloud", "terrain_of_dem"]
+__all__ = [
+    "CLOUD_SUFFIXES",
+    "Terrain",
+    "frame_of_bounds",
+    "open_terrain",
+    "terrain_of_cloud",
+    "terrain_of_dem",
+]
 
 #: What is read with laspy; anything else is left to GDAL.
 CLOUD_SUFFIXES = (".las", ".laz")
@@ -152,7 +159,7 @@ def terrain_of_dem(
             f"{name}: every cell of the raster is nodata, so there is no terrain in it; check the "
             "band and the nodata value."
         )
-    frame, unit = _frame(name, system, grid_bounds(dem.geometry), vertical_unit)
+    frame, unit = frame_of_bounds(name, system, grid_bounds(dem.geometry), vertical_unit)
     mesh = dem_mesh(dem, frame)
     if mesh.n_faces == 0:
         raise InputFileError(
@@ -190,7 +197,7 @@ def terrain_of_cloud(
             f"{name}: the cloud has {cloud.n_points} point{'s' * (cloud.n_points != 1)}; a "
             "surface needs at least three (check the file, and --classes if given)."
         )
-    frame, unit = _frame(name, system, cloud_bounds(cloud), vertical_unit, fault)
+    frame, unit = frame_of_bounds(name, system, cloud_bounds(cloud), vertical_unit, fault)
     try:
         mesh, source = cloud_mesh(cloud, frame)
     except (MeshError, InputFileError) as error:
@@ -198,13 +205,38 @@ def terrain_of_cloud(
     return Terrain(name, mesh, cloud, source, system, frame, unit)
 
 
-def _frame(
+def frame_of_bounds(
     name: str,
     system: CoordinateSystem,
     bounds: tuple[float, float, float, float],
     vertical_unit: str | None,
     fault: str = "",
 ) -> tuple[LocalFrame, str]:
+    """Return the working frame over an area, and the name of its unit of z.
+
+    Parameters
+    ----------
+    name : str
+        Of the input, for messages.
+    system : CoordinateSystem
+        Its CRS.
+    bounds : tuple of float
+        Smallest x and y, largest x and y.
+    vertical_unit : str or None
+        Unit of z; see `wavelet_gis.crs.working_frame` for what holds without it.
+    fault : str
+        Why there is no CRS, for the warning.
+
+    Raises
+    ------
+    CrsError
+        When the CRS or its extent cannot serve.
+
+    Warns
+    -----
+    CrsWarning, UnitWarning
+        As `open_terrain` tells.
+    """
     try:
         frame = working_frame(system, bounds, vertical_unit)
     except CrsError as error:

@@ -13,8 +13,9 @@ from wavelet_core import Pyramid, TriangleMesh
 from wavelet_core.errors import MeshError
 from wavelet_core.metrics import surface_errors
 from wavelet_core.triangulation import Merged, delaunay_faces, merge_duplicates
-from wavelet_gis.crs import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
+from wavelet_gis.crs import CoordinateSystem, LocalFrame
 from wavelet_gis.record import MeshSource, PyramidRecord
+from wavelet_gis.terrain import frame_of_bounds
 
 __all__ = [
     "ConstrainedTin",
@@ -172,12 +173,14 @@ class TinTerrain(NamedTuple):
 
 
 def frame_of_coordinates(
-    coordinates: FloatArray, system: CoordinateSystem, vertical_unit: str | None = None
+    name: str, coordinates: FloatArray, system: CoordinateSystem, vertical_unit: str | None = None
 ) -> tuple[LocalFrame, str]:
     """Return the working frame over coordinates in a CRS, and the name of their unit of z.
 
     Parameters
     ----------
+    name : str
+        Of the layer, for messages.
     coordinates : ndarray, shape (n, 3)
         In the CRS.
     system : CoordinateSystem
@@ -189,15 +192,15 @@ def frame_of_coordinates(
     ------
     MeshError
         When there is not one point.
+    CrsError
+        When the CRS or its extent cannot serve.
     """
     if len(coordinates) == 0:
-        raise MeshError("there is not one point; check the layer, its filter and its selection.")
+        raise MeshError(
+            f"{name}: there is not one point; check the layer, its filter and its selection."
+        )
     low, high = coordinates.min(axis=0), coordinates.max(axis=0)
-    frame = working_frame(system, (low[0], low[1], high[0], high[1]), vertical_unit)
-    unit = vertical_unit or system.vertical_unit
-    if unit is None:
-        return frame, "metre" if system.kind == "geographic" else "unit of x and y"
-    return frame, vertical_unit_name(unit)
+    return frame_of_bounds(name, system, (low[0], low[1], high[0], high[1]), vertical_unit)
 
 
 def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:

@@ -145,10 +145,10 @@ class AnalyseTin(AnalysisAlgorithm):
         name = self.source.sourceName()
         self.locked = None
         if _holds_polygons(self.source):
-            mesh, frame, unit = self._mesh_of_triangles(system, unit, feedback)
+            mesh, frame, unit = self._mesh_of_triangles(name, system, unit, feedback)
         else:
             points = self._points(parameters, context, feedback)
-            frame, unit = frame_of_coordinates(points.xyz, system, unit)
+            frame, unit = frame_of_coordinates(name, points.xyz, system, unit)
             mesh = self._mesh_of_points(parameters, context, points, frame, feedback)
         return TinTerrain(name, mesh, system, frame, unit)
 
@@ -160,7 +160,7 @@ class AnalyseTin(AnalysisAlgorithm):
             options["locked"] = self.locked
         return options
 
-    def _mesh_of_triangles(self, system, unit, feedback):
+    def _mesh_of_triangles(self, name, system, unit, feedback):
         from wavelet_gis.tin import frame_of_coordinates, mesh_of_corners
 
         from ..vectors import read_triangles
@@ -174,7 +174,7 @@ class AnalyseTin(AnalysisAlgorithm):
             )
         feedback.setProgressText(self.tr("Reading the triangles"))
         corners = read_triangles(self.source, feedback)
-        frame, unit = frame_of_coordinates(corners.reshape(-1, 3), system, unit)
+        frame, unit = frame_of_coordinates(name, corners.reshape(-1, 3), system, unit)
         return (
             mesh_of_corners(frame.to_local(corners.reshape(-1, 3)).reshape(corners.shape)),
             frame,
@@ -213,6 +213,13 @@ class AnalyseTin(AnalysisAlgorithm):
         if not inside.any():
             raise QgsProcessingException(
                 self.tr("No point is inside the clip polygon; check that the layers overlap.")
+            )
+        if constraints.breaklines and not constraints.meets(points.xyz[inside]):
+            raise QgsProcessingException(
+                self.tr(
+                    "No breakline is where the points are; check that the layers overlap, or leave "
+                    "the breaklines out."
+                )
             )
         require_running(feedback)
         feedback.setProgressText(self.tr("Triangulating {} points").format(int(inside.sum())))

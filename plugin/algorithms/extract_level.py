@@ -12,7 +12,7 @@ from qgis.core import (
 )
 
 from ..design import DOUBLE, INTEGER
-from ..mesh_output import add_mesh_parameter, mesh_packages, mesh_refusal
+from ..mesh_output import add_mesh_parameter, mesh_packages
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -105,12 +105,6 @@ class ExtractLevel(PyramidAlgorithm):
                 self.tr("Largest error of the surface, in the unit of elevation"),
             )
         )
-
-    def checkParameterValues(self, parameters, context):
-        """Refuse a mesh of an unknown format."""
-        is_fine, message = super().checkParameterValues(parameters, context)
-        refusal = mesh_refusal(self, parameters, context) if is_fine else message
-        return refusal is None, refusal or ""
 
     def packages(self, parameters, context):
         """Return what writing the mesh needs."""

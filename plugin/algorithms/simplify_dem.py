@@ -14,7 +14,7 @@ from qgis.core import (
 
 from ..base import TerrainWaveletsAlgorithm
 from ..design import DOUBLE, INTEGER, add_design_parameters, design_options
-from ..mesh_output import add_mesh_parameter, mesh_packages, mesh_refusal
+from ..mesh_output import add_mesh_parameter, mesh_packages
 from ._dem_input import DemInput
 
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
@@ -124,8 +124,7 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
             return False, self.tr(
                 "Say one of the three: the number of vertices, the largest error, or the RMSE."
             )
-        refusal = mesh_refusal(self, parameters, context)
-        return refusal is None, refusal or ""
+        return True, ""
 
     def packages(self, parameters, context):
         """Return what writing the mesh needs."""

@@ -265,6 +265,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>No breakline is where the points are; check that the layers overlap, or leave the breaklines out.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
     <source>No point is inside the clip polygon; check that the layers overlap.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1325,17 +1330,17 @@
   </message>
   <message>
     <location filename="../../plugin/lines.py"/>
-    <source>{}: there is no polygon to clip by.</source>
+    <source>{}: there is no breakline here; the TIN is made without.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/lines.py"/>
+    <source>{}: there is no polygon to clip by; check the layer, its filter and selection.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/mesh_output.py"/>
     <source>The suffix chooses the format. A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models; PLY alone keeps attributes; OBJ, STL and GLB are for 3D viewers and printers; LandXML (.xml) and DXF for CAD. GLB needs the Python package trimesh, DXF ezdxf. STL and GLB hold coordinates from a local origin, which the file tells.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/mesh_output.py"/>
-    <source>{}: a mesh is written as {}; end its name in one of these.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1414,6 +1419,11 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/rasters.py"/>
+    <source>{}: there is no band {}; the raster has {}.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/restored_output.py"/>
     <source>For a pyramid of a DEM.</source>
     <translation type="unfinished"></translation>
@@ -1475,12 +1485,22 @@
   </message>
   <message>
     <location filename="../../plugin/vectors.py"/>
+    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/vectors.py"/>
     <source>{}: the points have no Z; choose the field with the elevation.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/vectors.py"/>
     <source>{}: the triangles have no Z, so they hold no elevations.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/vectors.py"/>
+    <source>{}: what cannot be brought into the CRS of the terrain is left out (features: {}); check the CRS of the layer</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1496,6 +1516,11 @@
   <message>
     <location filename="../../plugin/wording.py"/>
     <source>one</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/wording.py"/>
+    <source>one of the analyses</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -5,6 +5,7 @@ from qgis_fixtures import (  # noqa: F401 - fixtures are found by name
     provider,
     qgis,
     qgis_environment,
+    refused,
     run,
     say_if_not_run,
     tolerate_foreign_warnings,

@@ -15,23 +15,6 @@ from qgis_layers import (
 )
 
 
-@pytest.fixture
-def refused(run):
-    """Return a function that runs what must be refused and returns the message in the log."""
-    from qgis.core import QgsProcessingException
-
-    def run_refused(name, parameters):
-        log = Log()
-        with pytest.raises(QgsProcessingException) as caught:
-            run(name, parameters, feedback=log)
-        message = "\n".join([str(caught.value), *log.errors])
-        assert "Traceback" not in message
-        assert " --" not in message
-        return message
-
-    return run_refused
-
-
 @pytest.fixture(scope="module")
 def pyramid(qgis, tmp_path_factory):
     """Return the results of an analysis in five levels of a small DEM."""
@@ -142,27 +125,6 @@ class TestDem:
         assert {"vertex_id", "level", "w_z", "magnitude"} <= set(details.fields().names())
         assert details.hasSpatialIndex() == details.SpatialIndexPresence.SpatialIndexPresent
         assert tin.extent().width() == pytest.approx(790.0)
-
-    def test_refusals_say_what_to_do(self, refused, tmp_path):
-        empty = np.full((20, 30), -9999.0, "float32")
-        path = write_raster(tmp_path / "void.tif", empty, -9999.0)
-        out = str(tmp_path / "out.gpkg")
-        assert "nodata" in refused("analysedem", {"INPUT": path, "OUTPUT": out})
-        wide = write_raster(
-            tmp_path / "wide.tif", hills().astype("float32"), None, 4326, (0.0, 60.0), 0.5
-        )
-        assert "reproject" in refused("analysedem", {"INPUT": wide, "OUTPUT": out})
-        text = tmp_path / "text.tif"
-        text.write_text("no raster")
-        assert refused("analysedem", {"INPUT": str(text), "OUTPUT": out})
-        assert not (tmp_path / "out.gpkg").exists()
-
-    def test_a_dem_without_crs_is_worked_on_with_a_warning(self, run, tmp_path):
-        path = write_raster(tmp_path / "dem.tif", hills().astype("float32"), epsg=None)
-        log = Log()
-        run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "o.gpkg")}, feedback=log)
-        assert any("assign one in the layer's properties" in text for text in log.warnings)
-        assert not any("--" in text for text in log.warnings)
 
     @pytest.mark.parametrize("percent", [1, 20, 60])
     def test_cancel_leaves_nothing_behind(self, run, tmp_path, percent):
@@ -391,20 +353,6 @@ class TestPointsAndTins:
             )
 
         assert corners(back["TIN"]) == corners(first["COARSE_TIN"])
-
-    def test_refusals_say_what_to_do(self, refused, tmp_path):
-        out = str(tmp_path / "p.gpkg")
-        far = wkt_layer("Polygon", ["Polygon ((0 0, 1 0, 1 1, 0 0))"])
-        points = point_layer(survey(100))
-        assert "overlap" in refused("analysetin", {"INPUT": points, "CLIP": far, "OUTPUT": out})
-        assert refused("analysetin", {"INPUT": point_layer([]), "OUTPUT": out})
-        flat = wkt_layer("Point", ["Point (1 1)", "Point (2 1)", "Point (1 2)"])
-        assert "field" in refused("analysetin", {"INPUT": flat, "OUTPUT": out})
-        line = point_layer([(700000 + k, 6600000 + k, k) for k in range(10)])
-        assert "line" in refused("analysetin", {"INPUT": line, "OUTPUT": out})
-        square = wkt_layer("PolygonZ", ["PolygonZ ((0 0 1, 1 0 1, 1 1 1, 0 1 1, 0 0 1))"])
-        assert "triangle" in refused("analysetin", {"INPUT": square, "OUTPUT": out})
-        assert not (tmp_path / "p.gpkg").exists()
 
     def test_breaklines_in_another_crs_are_transformed(self, run, tmp_path):
         from qgis.core import (

@@ -233,20 +233,6 @@ class TestSimplify:
         if suffix in n_written:
             assert n_written[suffix] == made["N_FACES"]
 
-    def test_another_mesh_format_is_refused_before_the_work(self, provider, dem, pyramid):
-        from qgis.core import QgsProcessingContext
-
-        for name, parameters in (
-            ("simplifydem", {"INPUT": dem, "VERTICES": 60}),
-            ("extractlevel", {"INPUT": pyramid}),
-        ):
-            algorithm = provider.algorithm(name).create()
-            is_fine, message = algorithm.checkParameterValues(
-                {**parameters, "MESH": "m.shp"}, QgsProcessingContext()
-            )
-            assert not is_fine
-            assert ".2dm" in message
-
     def test_two_rules_are_refused(self, provider, dem):
         from qgis.core import QgsProcessingContext
 
