@@ -218,10 +218,7 @@ def noise_gains(transform: Transform, seed: int = 0) -> list[FloatArray]:
     white noise leave there when they are really transformed.
     """
     n_fine = len(transform.steps[-1].odd) + len(transform.steps[-1].even) if transform.steps else 0
-    wanted = NOISE_SAMPLES // max(n_fine, 1)
-    n_columns = min(max(wanted, LEAST_NOISE_COLUMNS), MOST_NOISE_COLUMNS)
-    noise = np.random.default_rng(seed).standard_normal((n_fine, n_columns))
-    measured = transform.analyse(noise)[1]
+    measured = transform.analyse(noise_columns(n_fine, seed))[1]
     variance = np.ones(n_fine)
     gains: list[FloatArray] = []
     for step, detail in zip(reversed(transform.steps), reversed(measured), strict=True):
@@ -230,6 +227,13 @@ def noise_gains(transform: Transform, seed: int = 0) -> list[FloatArray]:
         variance = _even_variance(step, odd, even)
         gains.append(np.sqrt(of_details * (np.mean(detail**2) / of_details.mean())))
     return gains[::-1]
+
+
+def noise_columns(n_vertices: int, seed: int) -> FloatArray:
+    """Return columns of white noise to send through a transform, ``(n_vertices, k)``."""
+    wanted = NOISE_SAMPLES // max(n_vertices, 1)
+    n_columns = min(max(wanted, LEAST_NOISE_COLUMNS), MOST_NOISE_COLUMNS)
+    return np.random.default_rng(seed).standard_normal((n_vertices, n_columns))
 
 
 def _even_variance(step: LinearStep, odd: FloatArray, even: FloatArray) -> FloatArray:

@@ -7,7 +7,13 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from wavelet_core import denoise
-from wavelet_core.coefficients import band_gains, channel_noise, relifted
+from wavelet_core.coefficients import (
+    band_gains,
+    channel_index,
+    channel_noise,
+    check_level,
+    relifted,
+)
 from wavelet_gis.record import PyramidRecord
 
 __all__ = ["change_between", "chosen_gains", "denoised_record", "scaled_record"]
@@ -20,7 +26,7 @@ def denoised_record(
     sigma: float | None = None,
     *,
     channels: Sequence[str] = ("z",),
-    n_pyramids: int = 24,
+    n_pyramids: int = 32,
     progress: Progress | None = None,
 ) -> tuple[PyramidRecord, dict[str, float]]:
     """Return the record with the noise taken out, and the noise that was taken for it.
@@ -44,8 +50,15 @@ def denoised_record(
         With one more line of history.
     dict of str to float
         Standard deviation of the noise in each channel, in the input's unit.
+
+    Raises
+    ------
+    OptionError
+        An unknown channel or a negative number; nothing has been computed yet.
     """
     pyramid, sigmas = record.pyramid, {}
+    for name in channels:
+        channel_index(pyramid.channels, name)
     for k, name in enumerate(channels):
         unit = record.frame.z_scale if name == "z" else 1.0
         deviation = channel_noise(pyramid, name) if sigma is None else sigma * unit
@@ -88,6 +101,11 @@ def chosen_gains(
     metres : (float, float), optional
         Instead: keep details of this size on the ground only, in metres where the CRS tells its
         unit, else in its own.
+
+    Raises
+    ------
+    OptionError
+        Bounds in the wrong order, or a level without details.
     """
     chosen: dict[int, float] = {}
     if metres is not None:
@@ -97,6 +115,7 @@ def chosen_gains(
     elif levels is not None:
         chosen = band_gains(record.pyramid, levels=levels)
     for level, gain in gains:
+        check_level(level, record.pyramid)
         chosen[level] = gain * chosen.get(level, 1.0)
     return chosen
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,6 @@ from wavelet_gis.commands._options import add_overwrite_argument
 from wavelet_gis.console import Console
 
 if TYPE_CHECKING:
-    from wavelet_core import Pyramid
     from wavelet_gis.record import PyramidRecord
 
 HELP = "Change chosen scales of a pyramid or take out noise; write a DEM, a LAS file or a pyramid."
@@ -85,6 +83,12 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_core.errors import OptionError
     from wavelet_gis.atomic import check_output, new_file
+    from wavelet_gis.filtering import (
+        change_between,
+        chosen_gains,
+        denoised_record,
+        scaled_record,
+    )
     from wavelet_gis.pyramid_file import read_pyramid
 
     check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
@@ -93,84 +97,38 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         raise OptionError("nothing to change; give --gain, --band, --band-metres or --denoise.")
     record = read_pyramid(arguments.file)
     _check_suffix(arguments.output, record)
-    pyramid = record.pyramid
-    done: list[str] = []
+    gains = chosen_gains(
+        record, arguments.gain, levels=arguments.band, metres=arguments.band_metres
+    )
+    changed = record
     figures: dict[str, Any] = {}
     if arguments.denoise is not None:
-        pyramid, figures = _denoised(record, arguments, console)
-        done.append(_denoise_line(figures))
+        with console.progress("denoising") as progress:
+            changed, sigmas = denoised_record(
+                changed,
+                None if arguments.denoise is ESTIMATED else arguments.denoise,
+                channels=tuple(arguments.channel or ("z",)),
+                n_pyramids=arguments.pyramids,
+                progress=progress,
+            )
+        figures = {"sigma": sigmas, "n_pyramids": arguments.pyramids}
     if asks_scales or arguments.no_coarse:
-        gains = _gains(record, arguments)
-        pyramid = pyramid.with_gains(gains, 0.0 if arguments.no_coarse else 1.0)
+        changed = scaled_record(changed, gains, drops_coarse=arguments.no_coarse)
         figures["gains"] = gains
-        done.append(_gains_line(gains, arguments.no_coarse))
-    changed = record.with_pyramid(pyramid, "; ".join(done))
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         _write(scratch, arguments.output, changed, console)
-    for line in done:
+    for line in changed.history[len(record.history) :]:
         console.say(line)
     console.say(str(arguments.output))
-    console.figures({"output": str(arguments.output), **figures, **_change(record, changed)})
-
-
-def _gains(record: PyramidRecord, arguments: argparse.Namespace) -> dict[int, float]:
-    from wavelet_core.coefficients import band_gains
-
-    gains: dict[int, float] = {}
-    if arguments.band is not None:
-        gains = band_gains(record.pyramid, levels=arguments.band)
-    elif arguments.band_metres is not None:
-        unit = _working_units_a_metre(record)
-        low, high = (bound * unit for bound in arguments.band_metres)
-        gains = band_gains(record.pyramid, lengths=(low, high))
-    for level, gain in arguments.gain:
-        gains[level] = gain * gains.get(level, 1.0)
-    return gains
-
-
-def _working_units_a_metre(record: PyramidRecord) -> float:
-    """Return how many units of the working frame make a metre: 1 unless the CRS counts feet."""
-    is_metric = record.system.kind == "geographic"
-    return 1.0 if is_metric else 1.0 / record.system.horizontal_unit
-
-
-def _denoised(
-    record: PyramidRecord, arguments: argparse.Namespace, console: Console
-) -> tuple[Pyramid, dict[str, Any]]:
-    """Return the denoised pyramid, and what noise was taken for it."""
-    from wavelet_core import denoise
-    from wavelet_core.coefficients import channel_noise, relifted
-
-    pyramid = record.pyramid
-    channels = tuple(arguments.channel or ("z",))
-    sigmas = {}
-    with console.progress("denoising") as progress:
-        for k, name in enumerate(channels):
-            unit = record.frame.z_scale if name == "z" else 1.0
-            sigma = (
-                channel_noise(pyramid, name)
-                if arguments.denoise is ESTIMATED
-                else arguments.denoise * unit
-            )
-            sigmas[name] = sigma / unit
-            if arguments.pyramids == 0:
-                pyramid = pyramid.denoised(sigma, channels=[name])
-                continue
-            mesh = denoise(
-                pyramid.synthesise(),
-                sigma,
-                n_pyramids=arguments.pyramids,
-                channels=[name],
-                locked=pyramid.locked,
-                progress=_part_of(progress, k, len(channels)),
-            )
-            pyramid = relifted(pyramid, mesh)
-    return pyramid, {"sigma": sigmas, "n_pyramids": arguments.pyramids}
-
-
-def _part_of(progress: Callable[[float], bool], k: int, n: int) -> Callable[[float], bool]:
-    """Return the progress of the k-th of n equal parts."""
-    return lambda fraction: progress((k + fraction) / n)
+    rms, largest = change_between(record, changed)
+    console.figures(
+        {
+            "output": str(arguments.output),
+            **figures,
+            "rms_change": rms,
+            "largest_change": largest,
+        }
+    )
 
 
 def _write(
@@ -221,29 +179,6 @@ def _check_suffix(output: str, record: PyramidRecord) -> None:
         raise OutputFileError(
             f"{output}: the pyramid was made from {wanted} or, for a pyramid, .gpkg."
         )
-
-
-def _change(before: PyramidRecord, after: PyramidRecord) -> dict[str, float]:
-    """Return how far z has moved, in the input's unit."""
-    import numpy as np
-
-    z = [r.pyramid.synthesise().vertices[:, 2] for r in (before, after)]
-    moved = (z[1] - z[0]) / before.frame.z_scale
-    return {
-        "rms_change": float(np.sqrt(np.mean(moved**2))) if len(moved) else 0.0,
-        "largest_change": float(np.abs(moved).max(initial=0.0)),
-    }
-
-
-def _denoise_line(figures: dict[str, Any]) -> str:
-    sigmas = ", ".join(f"{name} {sigma:.4g}" for name, sigma in figures["sigma"].items())
-    how = f"average of {figures['n_pyramids']} pyramids" if figures["n_pyramids"] else "thresholds"
-    return f"denoised by {how}, standard deviation of the noise: {sigmas}"
-
-
-def _gains_line(gains: dict[int, float], without_coarse: bool) -> str:
-    named = ", ".join(f"{level}={gain:g}" for level, gain in sorted(gains.items()))
-    return f"gains {named or 'unchanged'}" + (", without the coarse surface" * without_coarse)
 
 
 def _gain(text: str) -> tuple[int, float]:
