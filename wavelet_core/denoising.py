@@ -1,46 +1,29 @@
-"""Denoising by the average of many pyramids, weighted by an unbiased estimate of the risk."""
+"""Denoising: details of many scales and directions, weighted by an estimate of the risk."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import lsq_linear
 
+from . import _weighted_sum
 from ._validate import FloatArray
+from ._weighted_sum import WeightedSum
 from .analysis import EXPECTED_KEPT, analyse
-from .coefficients import (
-    channel_index,
-    check_sigma,
-    estimate_noise,
-    local_energy,
-    noise_gains,
-)
+from .coefficients import channel_index, check_sigma, estimate_noise, noise_columns, noise_gains
 from .errors import Cancelled, OptionError
 from .mesh import TriangleMesh
-from .transform import LinearStep, Transform
+from .transform import Transform
+from .undecimated import UndecimatedBank
 
-#: Neighbourhood (rounds of averaging over rings) and energies, in units of the noise, that tell
-#: details of terrain from those of noise.
-ROUNDS = 4
-ENERGY_SCALES = (1.3, 2.0)
-N_ELEMENTS = 1 + len(ENERGY_SCALES)
-#: Local energies at which the change of the details is bounded: none, noise and a half, all.
-PROBED_ENERGIES = (0.0, 1.6, np.inf)
-LEAST_CHANGE, MOST_CHANGE = -1.0, 0.1
-#: Levels that share their weights: single ones gain 0.3 % and take twice as long.
-LEVELS_PER_BAND = 2
-#: Vertices on which the weights are fitted; more do not change them.
-MAX_FITTED = 250_000
+#: Scales of the details of all vertices for a level of a pyramid: they reach as far.
+SCALES_PER_LEVEL = 0.5
 #: A pyramid for denoising stops where its mesh would be smaller than this.
 LEAST_VERTICES = 100
-#: Step of the numerical derivative, in standard deviations of the noise.
-PROBE_STEP = 0.01
-#: Vertices times probes for the derivative to be accurate enough.
-PROBED_VERTICES = 100_000
-#: Ridge of the weights, relative to the mean energy of a column: it pulls towards no change.
-RIDGE = 1e-7
+#: Time that the details of all vertices take, in pyramids: for the progress.
+TIME_OF_VERTICES = 2
 
 Progress = Callable[[float], bool | None]
 
@@ -49,7 +32,7 @@ def denoise(
     mesh: TriangleMesh,
     sigma: float | None = None,
     *,
-    n_pyramids: int = 32,
+    n_pyramids: int = 8,
     levels: int = 14,
     prediction: str = "plane",
     channels: Sequence[str] = ("z",),
@@ -62,11 +45,12 @@ def denoise(
     Parameters
     ----------
     mesh : TriangleMesh
-        A TIN; its x and y stay as they are.
+        A TIN; its x and y stay as they are. Cells of a grid and scattered points will both do.
     sigma : float, optional
         Standard deviation of the noise, in the unit of the channel; by default estimated.
     n_pyramids : int
-        Number of pyramids, each from another random order of removal.
+        Number of pyramids, each from another random order of removal. More help little on a
+        grid, some percent where points are scattered unevenly, and take their time.
     levels : int
         The most levels of a pyramid. A feature that spans many more vertices than
         ``1.15 ** levels`` is left alone.
@@ -94,16 +78,19 @@ def denoise(
 
     Notes
     -----
-    Every pyramid sees the terrain through other triangles, so that their average shows none of
-    them; for images this is known as cycle spinning. The details d of each level enter as they
-    are and damped in two ways, :math:`d \exp(-(E / T)^2)`, where E is the local energy in units
-    of the noise that reaches each coefficient (:func:`wavelet_core.coefficients.noise_gains`).
-    The result is the input plus the weighted sum of these columns F whose expected squared
-    error, by Stein's unbiased estimate, is least: :math:`M b = -\sigma^2 \operatorname{div} F`
-    with :math:`M = F^T F`, within bounds that neither turn a detail over nor boost it by more than
-    a tenth. No clean surface and no threshold is needed, and noise of zero gives
-    back the input. The estimate holds for white normal noise; M is taken from the average of all
-    pyramids, which is what makes the weights fit the average rather than a single one.
+    The surface is taken apart in two ways. Pyramids in random order see it through other
+    triangles each, so that their average shows none of them; for images this is known as cycle
+    spinning. :class:`wavelet_core.undecimated.UndecimatedBank` gives each vertex a detail at every
+    scale, split by direction, since along a ridge or a bank there is less noise to be mistaken
+    for terrain. The details d of either enter as they are and damped in two ways,
+    :math:`d \exp(-(E / T)^2)`, where E is the local energy in units of the noise that reaches each
+    detail (:func:`wavelet_core.coefficients.noise_gains`). The result is the input plus the
+    weighted sum of these columns F whose expected squared error, by Stein's unbiased estimate,
+    is least: :math:`M b = -\sigma^2 \operatorname{div} F` with :math:`M = F^T F`, within bounds
+    that neither turn a detail over nor boost it by more than a half, to be shared by the two ways.
+    No clean surface and no threshold is needed, and noise of zero gives back the input. The
+    estimate holds for white normal noise; M is taken from the average of all pyramids, which is
+    what makes the weights fit the average rather than a single one.
 
     References
     ----------
@@ -135,29 +122,18 @@ def denoise(
     deviations = [
         estimate_noise(mesh, columns[:, c]) if sigma is None else float(sigma) for c in chosen
     ]
-    weighted = [
-        _WeightedSum(columns[:, c], deviation, _depth(mesh.n_vertices, levels), seed)
-        for c, deviation in zip(chosen, deviations, strict=True)
-        if deviation > 0
-    ]
-    fits_in_one = mesh.n_vertices <= MAX_FITTED
-    for is_fit in (True,) if fits_in_one else (True, False):
-        for k in range(n_pyramids):
-            _report(progress, (k / n_pyramids + (not is_fit)) / (1 if fits_in_one else 2))
-            transform = _transform(mesh, levels, prediction, locked, seed * 1_000_003 + k)
-            gains = noise_gains(transform, seed=seed)
-            for one in weighted:
-                if is_fit:
-                    one.fit(transform, gains, 1.0 / n_pyramids)
-                else:
-                    one.add(transform, gains, 1.0 / n_pyramids)
-        if is_fit:
-            for one in weighted:
-                one.solve(fits_in_one)
-    _report(progress, 1.0)
     changed = [c for c, deviation in zip(chosen, deviations, strict=True) if deviation > 0]
-    for c, one in zip(changed, weighted, strict=True):
-        columns[:, c] = one.result
+    if changed and len(mesh.faces):
+        decompositions = _Decompositions(mesh, n_pyramids, levels, prediction, locked, seed)
+        weighted = [
+            decompositions.weighted_sum(columns[:, c], deviation)
+            for c, deviation in zip(chosen, deviations, strict=True)
+            if deviation > 0
+        ]
+        _run(decompositions, weighted, progress)
+        for c, one in zip(changed, weighted, strict=True):
+            columns[:, c] = one.result
+    _report(progress, 1.0)
     return TriangleMesh._trusted(
         np.column_stack([mesh.vertices[:, :2], columns[:, 0]]),
         mesh.faces,
@@ -166,107 +142,61 @@ def denoise(
     )
 
 
-class _WeightedSum:
-    """One column, and the sum of its damped details that has the least estimated risk.
+class _Decompositions:
+    """What takes the mesh apart by scale: pyramids in random order, and all vertices at once."""
 
-    Parameters
-    ----------
-    values : ndarray, shape (n_vertices,)
-    sigma : float
-        Standard deviation of the noise, above 0.
-    levels : int
-        The most levels that a transform will have.
-    seed : int
-    """
+    def __init__(
+        self,
+        mesh: TriangleMesh,
+        n_pyramids: int,
+        levels: int,
+        prediction: str,
+        locked: ArrayLike | None,
+        seed: int,
+    ) -> None:
+        self._mesh, self._prediction, self._locked, self._seed = mesh, prediction, locked, seed
+        self.n_pyramids = n_pyramids
+        self.n_vertices = mesh.n_vertices
+        self.levels = _depth(mesh.n_vertices, levels)
+        noise = noise_columns(mesh.n_vertices, seed)
+        n_scales = max(round(SCALES_PER_LEVEL * self.levels), 1)
+        self.bank = UndecimatedBank.from_mesh(mesh, n_scales, noise, locked)
 
-    def __init__(self, values: FloatArray, sigma: float, levels: int, seed: int) -> None:
-        generator = np.random.default_rng(seed)
-        n = len(values)
-        self._values = values - values.mean()
-        self._sigma = sigma
-        n_probes = max(1, min(8, PROBED_VERTICES // n))
-        self._generator, self._n_probes = generator, n_probes
-        self._rows = (
-            slice(None) if n <= MAX_FITTED else np.sort(generator.permutation(n)[:MAX_FITTED])
-        )
-        n_columns = -(-levels // LEVELS_PER_BAND) * N_ELEMENTS
-        self._columns = np.zeros((min(n, MAX_FITTED), n_columns))
-        self._divergence = np.zeros(n_columns)
-        self._weights = np.zeros(n_columns)
-        self.result = values.copy()
+    def weighted_sum(self, values: FloatArray, sigma: float) -> WeightedSum:
+        """Return the sum of a column's details, whose weights are yet to be fitted."""
+        return WeightedSum(values, sigma, self.bank, self.n_pyramids, self.levels, self._seed)
 
-    def fit(self, transform: Transform, gains: list[FloatArray], share: float) -> None:
-        """Take in the columns of one transform, and their divergence along the probes."""
-        step_size = PROBE_STEP * self._sigma
-        shape = (len(self._values), self._n_probes)
-        probes = self._generator.choice([-1.0, 1.0], size=shape)
-        shifted = self._values[:, None] + step_size * probes
-        details = transform.analyse(np.column_stack([self._values, shifted]))[1]
-        damped = [
-            _damped(step, detail, self._sigma * gain)
-            for step, detail, gain in zip(transform.steps, details, gains, strict=True)
-        ]
-        for first in range(0, len(damped), LEVELS_PER_BAND):  # counted from the finest
-            levels = range(len(damped) - 1 - first, len(damped) - 1 - first - LEVELS_PER_BAND, -1)
-            band = transform.synthesise_bands(
-                {k: damped[k].reshape(len(damped[k]), -1) for k in levels if k >= 0}
-            ).reshape(*probes.shape[:1], 1 + self._n_probes, N_ELEMENTS)
-            where = _block(first)
-            self._columns[:, where] += share * band[self._rows, 0]
-            change = band[:, 1:] - band[:, :1]
-            slope = np.einsum("vp,vpk->k", probes, change) / self._n_probes
-            self._divergence[where] += share * slope / step_size
-
-    def solve(self, finish: bool) -> None:
-        """Find the weights; with ``finish`` the fitted columns cover all vertices: sum them.
-
-        A level's details are multiplied by 1 + b_0 + b_1 exp(...) + ..., a function of their
-        local energy. Its values at as many energies are the unknowns here, so that they can be
-        kept between dropping and slightly boosting: a sigma that is far too large would
-        otherwise turn details over.
-        """
-        share = len(self._columns) / len(self._values)
-        to_weights = np.kron(
-            np.eye(len(self._weights) // N_ELEMENTS), np.linalg.inv(_multipliers(PROBED_ENERGIES))
-        )
-        moments = to_weights.T @ (self._columns.T @ self._columns) @ to_weights
-        pull = -(self._sigma**2) * share * (to_weights.T @ self._divergence)
-        size = np.sqrt(np.where(np.diag(moments) > 0, np.diag(moments), 1.0))
-        root = np.linalg.cholesky(moments / np.outer(size, size) + RIDGE * np.eye(len(size)))
-        target = np.linalg.solve(root, pull / size)
-        bounds = (LEAST_CHANGE * size, MOST_CHANGE * size)
-        self._weights = to_weights @ (lsq_linear(root.T, target, bounds, method="bvls").x / size)
-        if finish:
-            self.result += self._columns @ self._weights
-
-    def add(self, transform: Transform, gains: list[FloatArray], share: float) -> None:
-        """Add the weighted columns of one transform to the result."""
-        details = transform.analyse(self._values[:, None])[1]
-        sums = {}
-        for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
-            damped = _damped(step, details[level], self._sigma * gain)[:, 0]
-            sums[level] = damped @ self._weights[_block(len(gains) - 1 - level)][:, None]
-        if sums:
-            self.result += share * transform.synthesise_bands(sums)[:, 0]
+    def pyramids(self) -> Iterator[tuple[Transform, list[FloatArray]]]:
+        """Yield the transform of each pyramid and how noise reaches its details."""
+        for k in range(self.n_pyramids):
+            transform = _transform(
+                self._mesh, self.levels, self._prediction, self._locked, self._seed * 1_000_003 + k
+            )
+            yield transform, noise_gains(transform, seed=self._seed)
 
 
-def _damped(step: LinearStep, details: FloatArray, noise: FloatArray) -> FloatArray:
-    """Return ``(n_odd, k, N_ELEMENTS)``: each column as it is and damped where it is weak."""
-    energy = local_energy(step, (details / noise[:, None]) ** 2, ROUNDS)
-    damped = [details * np.exp(-((energy / scale) ** 2)) for scale in ENERGY_SCALES]
-    return np.stack([details, *damped], axis=2)
-
-
-def _multipliers(energies: Sequence[float]) -> FloatArray:
-    """Return what each element contributes at some local energies, ``(n, N_ELEMENTS)``."""
-    ratio = np.divide.outer(np.asarray(energies), np.asarray(ENERGY_SCALES))
-    return np.column_stack([np.ones(len(ratio)), np.exp(-(ratio**2))])
-
-
-def _block(levels_above: int) -> slice:
-    """Return the columns of a level, by its distance from the finest: so all transforms agree."""
-    first = levels_above // LEVELS_PER_BAND * N_ELEMENTS
-    return slice(first, first + N_ELEMENTS)
+def _run(
+    decompositions: _Decompositions, weighted: Sequence[WeightedSum], progress: Progress | None
+) -> None:
+    """Fit the weights of every column, then sum; meshes too large to keep are gone over twice."""
+    fits_in_one = decompositions.n_vertices <= _weighted_sum.MAX_FITTED
+    n_parts = (decompositions.n_pyramids + TIME_OF_VERTICES) * (1 if fits_in_one else 2)
+    n_done = 0
+    for is_fit in (True,) if fits_in_one else (True, False):
+        for one in weighted:
+            (one.fit_vertices if is_fit else one.add_vertices)(
+                partial(_report, progress, n_done / n_parts)
+            )
+        n_done += TIME_OF_VERTICES
+        if is_fit or any(one.uses_pyramids for one in weighted):
+            for transform, gains in decompositions.pyramids():
+                _report(progress, n_done / n_parts)
+                for one in weighted:
+                    (one.fit if is_fit else one.add)(transform, gains)
+                n_done += 1
+        if is_fit:
+            for one in weighted:
+                one.solve(fits_in_one)
 
 
 def _depth(n_vertices: int, levels: int) -> int:
@@ -283,7 +213,7 @@ def _transform(
     plan = TriangleMesh._trusted(flat, mesh.faces, np.empty((mesh.n_vertices, 0)), ())
     pyramid = analyse(
         plan,
-        levels=_depth(mesh.n_vertices, levels),
+        levels=levels,
         partition="random",
         prediction=prediction,
         update="minimum_norm",

@@ -26,7 +26,7 @@ def denoised_record(
     sigma: float | None = None,
     *,
     channels: Sequence[str] = ("z",),
-    n_pyramids: int = 32,
+    n_pyramids: int = 8,
     progress: Progress | None = None,
 ) -> tuple[PyramidRecord, dict[str, float]]:
     """Return the record with the noise taken out, and the noise that was taken for it.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from wavelet_core import Cancelled, OptionError, TriangleMesh, denoise, denoising
+from wavelet_core import Cancelled, OptionError, TriangleMesh, _weighted_sum, denoise
 
 
 def terrain(n=90):
@@ -98,7 +98,7 @@ def test_locked_vertices_keep_their_values():
 def test_meshes_too_large_to_keep_give_the_same_result(monkeypatch):
     truth = terrain(40) + np.random.default_rng(2).normal(0, 0.3, (40, 40))
     whole = denoise(mesh_of(truth), 0.3, n_pyramids=3).vertices[:, 2]
-    monkeypatch.setattr(denoising, "MAX_FITTED", 1500)
+    monkeypatch.setattr(_weighted_sum, "MAX_FITTED", 1500)
     parts = denoise(mesh_of(truth), 0.3, n_pyramids=3).vertices[:, 2]
     assert not np.array_equal(parts, whole)
     assert np.std(parts - whole) < 0.05
@@ -140,3 +140,18 @@ def test_a_sigma_far_too_large_smooths_and_never_turns_details_over():
     assert smooth.min() > truth.min() - 0.5
     assert smooth.max() < truth.max() + 0.5
     assert np.std(smooth - truth.ravel()) < 0.6 * np.std(truth)
+
+
+@pytest.mark.large
+def test_a_step_of_lidar_points_moves_by_no_more_than_noise():
+    # Without bounds on its weights the solver once moved points beside such a wall by 59 m.
+    rng = np.random.default_rng(3)
+    points = rng.uniform(0, 100, (6000, 2))
+    truth = 0.05 * points[:, 0] + 8.0 * (points[:, 0] > 50)
+    z = truth + rng.normal(0, 0.05, len(points))
+    mesh = TriangleMesh.from_points(np.column_stack([points, z]))
+    clean = denoise(mesh, 0.05, n_pyramids=8).vertices[:, 2]
+    assert np.abs(clean - z).max() < 6 * 0.05
+    assert np.std(clean - truth) < 0.5 * 0.05
+    beside = np.abs(points[:, 0] - 50) < 2
+    assert np.abs(clean - truth)[beside].max() < 6 * 0.05

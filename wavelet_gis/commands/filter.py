@@ -65,9 +65,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     noise.add_argument(
         "--pyramids",
         type=int,
-        default=32,
+        default=8,
         metavar="N",
-        help="average over so many pyramids in random order (default 32); 0: threshold the "
+        help="average over so many pyramids in random order (default 8); 0: threshold the "
         "details of this pyramid alone, which is quick and leaves traces of its triangles",
     )
     noise.add_argument(
