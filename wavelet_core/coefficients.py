@@ -91,7 +91,7 @@ def band_gains(
     Raises
     ------
     OptionError
-        Both or neither given, or bounds in the wrong order.
+        Both or neither given, bounds in the wrong order, or lengths that no level has details of.
     """
     if (levels is None) == (lengths is None):
         raise OptionError("a band is given by levels or by lengths on the ground; give one.")
@@ -104,7 +104,13 @@ def band_gains(
         sizes: Sequence[float] = range(pyramid.n_levels)
     else:
         sizes = level_spacings(pyramid)[1:].tolist()
-    return {level: float(low <= size <= high) for level, size in enumerate(sizes)}
+    gains = {level: float(low <= size <= high) for level, size in enumerate(sizes)}
+    if lengths is not None and gains and not any(gains.values()):
+        raise OptionError(
+            f"no level has details of {low:.4g} to {high:.4g}, in the unit of x and y; they are of "
+            f"{min(sizes):.4g} to {max(sizes):.4g}. Choose others, or analyse with more levels."
+        )
+    return gains
 
 
 def check_level(level: int, pyramid: Pyramid) -> None:
