@@ -38,6 +38,13 @@ def test_the_root_mean_square_is_kept_and_used_up(done, dem, tmp_path):
     assert 0.27 <= figures["rmse"] <= 0.3
 
 
+def test_fitted_heights_have_the_smaller_mean_square(done, dem, tmp_path):
+    arguments = ("simplify", dem, tmp_path / "out.ply", "--vertices", 150, "--json", "--overwrite")
+    as_fitted, as_lifted = done(*arguments).figures, done(*arguments, "--no-fit").figures
+    assert as_fitted["rmse"] < 0.97 * as_lifted["rmse"]
+    assert as_fitted["n_vertices"] == as_lifted["n_vertices"] == 150
+
+
 def test_max_norm_has_the_smaller_largest_error(done, dem, tmp_path):
     by_norm = {
         norm: done(

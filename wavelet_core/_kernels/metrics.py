@@ -29,17 +29,18 @@ def sort_into_cells(plan, x0, y0, size, n_columns, n_rows, cell_indptr, order):
         cursor[cell[p]] += 1
 
 
-# vertices (n, 3), faces (n_faces, 3) int, points (n_points, 3) float64;
-# error (n_points,) float64, NaN on entry: filled with z(point) - z(face) by the first face
+# vertices (n, >= 2), points (n_points, >= 2) float64, of which x and y count; faces (n_faces, 3)
+# int; face_of (n_points,) int64, -1 on entry: filled with the first face that covers each point,
+# weights (n_points, 2) with those of its second and third corner
 @njit
-def errors_under_faces(
-    vertices, faces, points, x0, y0, size, n_columns, n_rows, cell_indptr, order, error
+def cover_points(
+    vertices, faces, points, x0, y0, size, n_columns, n_rows, cell_indptr, order, face_of, weights
 ):
     for face in range(faces.shape[0]):
         a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
-        ax, ay, az = vertices[a, 0], vertices[a, 1], vertices[a, 2]
-        bx, by, bz = vertices[b, 0] - ax, vertices[b, 1] - ay, vertices[b, 2] - az
-        cx, cy, cz = vertices[c, 0] - ax, vertices[c, 1] - ay, vertices[c, 2] - az
+        ax, ay = vertices[a, 0], vertices[a, 1]
+        bx, by = vertices[b, 0] - ax, vertices[b, 1] - ay
+        cx, cy = vertices[c, 0] - ax, vertices[c, 1] - ay
         doubled_area = bx * cy - by * cx
         if doubled_area == 0.0:
             continue
@@ -75,7 +76,7 @@ def errors_under_faces(
                 cell_indptr[row * n_columns + max(last + 1, min(first, n_columns))],
             ):
                 p = order[k]
-                if not math.isnan(error[p]):
+                if face_of[p] >= 0:
                     continue
                 dx, dy = points[p, 0] - ax, points[p, 1] - ay
                 at_b = (dx * cy - dy * cx) / doubled_area
@@ -84,4 +85,5 @@ def errors_under_faces(
                     continue
                 if at_b + at_c > 1.0 + EDGE_TOLERANCE:
                     continue
-                error[p] = points[p, 2] - (az + at_b * bz + at_c * cz)
+                face_of[p] = face
+                weights[p, 0], weights[p, 1] = at_b, at_c

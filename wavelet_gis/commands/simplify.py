@@ -42,6 +42,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=("rms", "max"),
         help="keep the mean square or the largest error small; max with --max-error, else rms",
     )
+    parser.add_argument(
+        "--no-fit",
+        action="store_true",
+        help="keep the heights of the pyramid's level instead of fitting them to all input points",
+    )
     raster = parser.add_argument_group("raster")
     raster.add_argument(
         "--cell-size", type=length, metavar="SIZE", help="by default the grid of the input"
@@ -58,6 +63,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     import numpy as np
 
     from wavelet_core import OptionError, analyse
+    from wavelet_core.fitting import fitted
     from wavelet_core.metrics import surface_errors
     from wavelet_gis.atomic import check_output, new_file
     from wavelet_gis.meshfiles import MESH_SUFFIXES
@@ -88,6 +94,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     with console.progress("simplifying") as progress:
         pyramid = analyse(terrain.mesh, **rules, **options, progress=progress)
     mesh = pyramid.mesh(0)
+    if not arguments.no_fit and pyramid.parameters["norm"] == "rms":
+        mesh = fitted(mesh, terrain.mesh)
     errors = surface_errors(mesh, terrain.mesh.vertices) / unit
     covered = errors[np.isfinite(errors)]
     record = PyramidRecord(
