@@ -100,8 +100,8 @@ def analyse(
         What ``partition="surface"`` keeps small: the mean square of the vertical errors, or the
         largest. By default ``"max"`` if ``max_error`` is given, else ``"rms"``.
     removal_fraction : float, optional
-        Largest share of the vertices that a level of ``partition="surface"`` may take; 0.25 by
-        default.
+        Largest share of the vertices that a level of ``partition="surface"`` may take; by default
+        0.25, and 0.1 for ``norm="max"`` with ``target_vertices``.
 
     Returns
     -------

@@ -24,8 +24,10 @@ NORMS = ("rms", "max")
 #: many times what the cheapest ones do: cheap terrain goes first, whatever its share. Where only
 #: the number of levels is given, each level takes its full share.
 COST_RATIO = 8.0
-#: Costs beyond this multiple of the last level's dearest are not worked out.
+#: Costs beyond this multiple of the last level's dearest are not worked out: the first with a size
+#: or a tolerance; the second where each level takes its full share, which needs more to choose from.
 FORESIGHT = 2.0
+FULL_FORESIGHT = 4.0
 #: With an update and a tolerance, how often a level is tried with fewer vertices.
 N_ATTEMPTS = 6
 #: An analysis by tolerance ends when a level takes less than this part of the vertices.
@@ -54,8 +56,17 @@ class SurfaceRules(NamedTuple):
     @property
     def cost_ratio(self) -> float:
         """How much dearer than the cheapest the vertices of one level may be."""
-        has_aim = self.target_vertices > 0 or min(self.max_error, self.max_rms) < np.inf
-        return COST_RATIO if has_aim else np.inf
+        return COST_RATIO if self.has_aim else np.inf
+
+    @property
+    def foresight(self) -> float:
+        """Up to what multiple of this level's dearest the next level's costs are worked out."""
+        return FORESIGHT if self.has_aim else FULL_FORESIGHT
+
+    @property
+    def has_aim(self) -> bool:
+        """Whether a size or a tolerance says when to stop."""
+        return self.target_vertices > 0 or min(self.max_error, self.max_rms) < np.inf
 
     @property
     def needs_proof(self) -> bool:
@@ -141,7 +152,7 @@ def _take_step(
         return None
     cost = level.costs(odd)
     dearest = float(cost.max())
-    next_cutoff = FORESIGHT * dearest if dearest > 0 else np.inf
+    next_cutoff = rules.foresight * dearest if dearest > 0 else np.inf
     report(level.n_vertices)
     if not rules.needs_proof:
         return level, level.remove(odd), next_cutoff
