@@ -26,7 +26,7 @@ import numpy as np
 from numba import njit
 
 CELL = 30.0
-LIMIT_SECONDS = 900
+LIMIT_SECONDS = 180
 
 
 def elevations(path: str, size: int) -> np.ndarray:
