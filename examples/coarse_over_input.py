@@ -37,7 +37,8 @@ def draw(dem: str, picture: str, n_vertices: int) -> None:
         if code:
             raise SystemExit(code)
         frame = pyogrio.raw.read(tin, layer=str(pyogrio.list_layers(tin)[0, 0]))
-    triangles = np.array([shapely.get_coordinates(g, include_z=True)[:3] for g in shapely.from_wkb(frame[2])])
+    polygons = shapely.from_wkb(frame[2])
+    triangles = np.array([shapely.get_coordinates(p, include_z=True)[:3] for p in polygons])
     with rasterio.open(dem) as dataset:
         z = dataset.read(1).astype(float)
         bounds, is_geographic = dataset.bounds, dataset.crs.is_geographic

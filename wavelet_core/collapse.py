@@ -40,7 +40,7 @@ def merge_map(
     return position
 
 
-def merged_faces(faces: NDArray[np.int32], position: NDArray[np.int32]) -> NDArray[np.int32]:
+def merged_faces(faces: NDArray[np.integer], position: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return the faces after the collapses; those that lost their area have dropped out."""
     moved = position[faces]
     a, b, c = moved.T

@@ -143,10 +143,8 @@ class Pyramid:
         """
         self._require_level(level)
         ids = self._ids_by_level(0)
-        for k, coefficients in self._coefficients(ids):
-            if k == level:
-                break
-        return self._assemble(coefficients, ids[level], self._faces_of(level))
+        by_level = (c for k, c in self._coefficients(ids) if k == level)
+        return self._assemble(next(by_level), ids[level], self._faces_of(level))
 
     def synthesise(self, level: int | None = None) -> TriangleMesh:
         """Return the mesh of a level; by default of the finest, which equals the input."""

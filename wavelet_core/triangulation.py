@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,7 +99,7 @@ def _require_not_collinear(plan: FloatArray) -> None:
         raise MeshError("all points lie on one line in plan; a surface needs more than that.")
 
 
-def _cdt_faces(pythoncdt, plan: FloatArray, edges: IntArray | None) -> IntArray:
+def _cdt_faces(pythoncdt: Any, plan: FloatArray, edges: IntArray | None) -> IntArray:
     triangulation = pythoncdt.Triangulation(
         pythoncdt.VertexInsertionOrder.AUTO,
         pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED,

@@ -112,12 +112,12 @@ def write_dxf(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
         ezdxf is absent.
     """
     try:
-        import ezdxf
+        import ezdxf.filemanagement
     except ImportError as error:
         raise MissingDependencyError(
             "DXF is written by ezdxf, which is not installed; 'pip install ezdxf' mends it."
         ) from error
-    document = ezdxf.new("R2010")
+    document = ezdxf.filemanagement.new("R2010")
     document.layers.add("TERRAIN")
     space = document.modelspace()
     for a, b, c in mesh.vertices[mesh.faces].tolist():

@@ -29,12 +29,10 @@ THREADS_VARIABLE = "TERRAIN_WAVELETS_THREADS"
 #: half a millisecond a vertex and level.
 MAX_VERTICES_WITHOUT_NUMBA = 50_000
 
-try:
-    if os.environ.get(DISABLE_VARIABLE):
-        raise ImportError("disabled by " + DISABLE_VARIABLE)
-    import numba as _numba
-except ImportError:
-    _numba = None
+_numba: Any = None
+if not os.environ.get(DISABLE_VARIABLE):
+    with contextlib.suppress(ImportError):
+        import numba as _numba
 
 HAS_NUMBA = _numba is not None
 

@@ -77,6 +77,11 @@ def find_outgoing(start, stop, indptr, star, mesh, n_fans):
             n_fans[vertex] = 1 if n_walked == degree and n_open < 2 else 2
 
 
+@inlined
+def moved(half_edge, face_position):
+    return 3 * face_position[half_edge // 3] + half_edge % 3 if half_edge >= 0 else -1
+
+
 # Half-edges of the faces (m,) int64 that live on, renumbered; packed: HalfEdges, filled.
 # position (n,), face_position (n_faces,) int32: where each vertex and face goes
 @njit
@@ -84,17 +89,15 @@ def pack_faces(start, stop, faces, position, face_position, mesh, packed):
     for k in range(start, stop):
         for corner in range(3):
             half_edge = 3 * faces[k] + corner
-            twin = mesh.twin[half_edge]
             packed.origin[3 * k + corner] = position[mesh.origin[half_edge]]
-            packed.twin[3 * k + corner] = 3 * face_position[twin // 3] + twin % 3 if twin >= 0 else -1
+            packed.twin[3 * k + corner] = moved(mesh.twin[half_edge], face_position)
 
 
 # The same for the vertices (n,) int64 that live on
 @njit
 def pack_vertices(start, stop, vertices, face_position, mesh, packed):
     for k in range(start, stop):
-        outgoing = mesh.outgoing[vertices[k]]
-        packed.outgoing[k] = 3 * face_position[outgoing // 3] + outgoing % 3 if outgoing >= 0 else -1
+        packed.outgoing[k] = moved(mesh.outgoing[vertices[k]], face_position)
 
 
 @inlined

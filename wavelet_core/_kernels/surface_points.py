@@ -231,9 +231,7 @@ def sum_over_faces(
                 at_c = (bx * py - by * px) * per_area
                 at_a = 1.0 - at_b - at_c
                 for i in range(n_channels):
-                    error = (
-                        at_a * z[a, i] + at_b * z[b, i] + at_c * z[c, i]
-                    ) - point_z[p, i]
+                    error = (at_a * z[a, i] + at_b * z[b, i] + at_c * z[c, i]) - point_z[p, i]
                     sum_all += error * error
                     if i == 0:
                         sum_z += error * error
