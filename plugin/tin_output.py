@@ -10,9 +10,12 @@ from . import styles, vectors
 from .pyramids import crs_of
 
 
-def write_tin(algorithm, parameters, name, context, record, level, feedback) -> str:
-    """Write the triangles of a level to the sink ``name`` and return where they are."""
-    tin, _ = _level_layers(record, level)
+def write_tin(algorithm, parameters, name, context, record, level, feedback, mesh=None) -> str:
+    """Write the triangles of a level to the sink ``name`` and return where they are.
+
+    ``mesh`` is the level with other heights, if they were fitted.
+    """
+    tin, _ = _level_layers(record, level) if mesh is None else _layers_of(record, level, mesh)
     destination = write_layer(algorithm, parameters, name, context, record, tin, feedback)
     styles.style_output(context, destination, partial(styles.apply_qml, qml=tin.style))
     return destination
@@ -28,6 +31,12 @@ def _level_layers(record, level):
     from wavelet_gis.layers import coarse_layers
 
     return coarse_layers(record, level)
+
+
+def _layers_of(record, level, mesh):
+    from wavelet_gis.layers import tin_layers
+
+    return tin_layers(record, mesh, record.pyramid.vertex_ids(level))
 
 
 def write_layer(algorithm, parameters, name, context, record, layer, feedback) -> str:

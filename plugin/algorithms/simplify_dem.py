@@ -6,6 +6,7 @@ from qgis.core import (
     QgsProcessing,
     QgsProcessingException,
     QgsProcessingOutputNumber,
+    QgsProcessingParameterBoolean,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterNumber,
@@ -68,6 +69,15 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
         )
         add_design_parameters(self)
         self.add(
+            QgsProcessingParameterBoolean("FIT", self.tr("Fit the heights to all cells"), True),
+            self.tr(
+                "Least squares: the smallest RMSE that these triangles can have. Without it, and "
+                "where the largest error is kept small, the heights are those of the pyramid's "
+                "coarsest level."
+            ),
+            advanced=True,
+        )
+        self.add(
             QgsProcessingParameterNumber(
                 "CELL_SIZE",
                 self.tr("Cell size of the raster"),
@@ -104,7 +114,7 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
                 optional=True,
                 createByDefault=False,
             ),
-            self.tr("The reversible pyramid whose coarsest level the TIN is."),
+            self.tr("The reversible pyramid whose coarsest level has the triangles of the TIN."),
             advanced=True,
         )
         for name, description in (
@@ -133,6 +143,7 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
     def work(self, parameters, context, feedback):
         """Read, simplify, measure, write what was asked for."""
         from wavelet_core import analyse
+        from wavelet_core.fitting import fitted
 
         from .. import mesh_output, pyramids, tin_output
         from ..bridge import progress, require_running
@@ -150,6 +161,9 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
         record = terrain.record(pyramid)
         require_running(feedback)
         coarsest = record.pyramid.mesh(0)
+        is_fitted = self.parameterAsBool(parameters, "FIT", context)
+        if is_fitted and pyramid.parameters["norm"] == "rms":
+            coarsest = fitted(coarsest, terrain.mesh)
         results = {
             "N_VERTICES": coarsest.n_vertices,
             "N_FACES": coarsest.n_faces,
@@ -163,7 +177,7 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
             results["OUTPUT"] = path
         if parameters.get("TIN"):
             results["TIN"] = tin_output.write_tin(
-                self, parameters, "TIN", context, record, 0, feedback
+                self, parameters, "TIN", context, record, 0, feedback, coarsest
             )
         if parameters.get("RASTER"):
             results["RASTER"] = mesh_output.write_raster(

@@ -1000,6 +1000,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Fit the heights to all cells</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Gives the TIN of a number of vertices, or the TIN that is exact enough, with a small error at all cells of the DEM. Say one of the three: how many vertices, the largest error, or the root mean square error.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1016,6 +1021,11 @@
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Largest error at all cells, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1085,7 +1095,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>The reversible pyramid whose coarsest level the TIN is.</source>
+    <source>The reversible pyramid whose coarsest level has the triangles of the TIN.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

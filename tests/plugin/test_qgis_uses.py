@@ -195,6 +195,11 @@ class TestSimplify:
         back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "b.tif")})
         assert back["EXACT"] == "yes"
 
+    def test_fitted_heights_have_the_smaller_mean_square(self, run, dem):
+        parameters = {"INPUT": dem, "VERTICES": 200, "TIN": "TEMPORARY_OUTPUT"}
+        fitted, lifted = run("simplifydem", parameters), run("simplifydem", parameters | {"FIT": 0})
+        assert fitted["RMSE_SURFACE"] < 0.97 * lifted["RMSE_SURFACE"]
+
     @pytest.mark.parametrize(
         ("rule", "figure"), [("MAX_ERROR", "MAX_ERROR_SURFACE"), ("RMSE", "RMSE_SURFACE")]
     )
