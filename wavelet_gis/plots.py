@@ -67,7 +67,7 @@ def plot_details(path: str | os.PathLike[str], record: PyramidRecord) -> None:
             label=f"{level}: {spacings[level + 1]:.3g}",
             rasterized=True,
         )
-    right.set_title(f"Details, by strength (largest: {largest:.3g}) and by level")
+    right.set_title(f"Details, by strength (full size from {largest:.3g}) and by level")
     legend = right.legend(
         title="level: spacing", loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False
     )
