@@ -1,4 +1,7 @@
-"""What the README shows works: its Python blocks run, its commands and files exist."""
+"""What the README shows works: its Python blocks run, its commands and files exist.
+
+The same for the page on sizes and errors; the other pages' examples are run beside what they show.
+"""
 
 import re
 from pathlib import Path
@@ -6,36 +9,41 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-README = (ROOT / "README.md").read_text("utf-8")
+PAGES = ("README.md", "docs/surface.md")
 
 
-def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+def blocks(language, page="README.md"):
+    text = (ROOT / page).read_text("utf-8")
+    return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
 
 
-@pytest.mark.parametrize("block", blocks("python"))
+@pytest.mark.parametrize("block", [block for page in PAGES for block in blocks("python", page)])
 def test_python_blocks_run(block, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     exec(compile(block, "README.md", "exec"), {})
 
 
-def test_there_is_a_python_block():
-    assert blocks("python")
+@pytest.mark.parametrize("page", PAGES)
+def test_there_is_a_python_block(page):
+    assert blocks("python", page)
 
 
-def test_commands_are_those_of_the_program():
+@pytest.mark.parametrize("page", PAGES)
+def test_commands_are_those_of_the_program(page):
     from wavelet_gis import commands
 
     folder = Path(commands.__file__).parent
     known = {path.stem for path in folder.glob("[!_]*.py")}
-    lines = "\n".join(blocks("sh"))
+    lines = "\n".join(blocks("sh", page))
     used = set(re.findall(r"terrain-wavelets (\w+)", lines))
     assert used
     assert used <= known, f"no such command: {used - known}"
 
 
-def test_linked_files_exist():
-    links = re.findall(r"\]\((?!https?:)([^)#]+)", README)
+@pytest.mark.parametrize("page", PAGES)
+def test_linked_files_exist(page):
+    path = ROOT / page
+    links = re.findall(r"\]\((?!https?:)([^)#]+)", path.read_text("utf-8"))
     assert links
-    missing = [link for link in links if not (ROOT / link).exists()]
+    missing = [link for link in links if not (path.parent / link).exists()]
     assert missing == []
