@@ -101,7 +101,8 @@ def analyse(
         largest. By default ``"max"`` if ``max_error`` is given, else ``"rms"``.
     removal_fraction : float, optional
         Largest share of the vertices that a level of ``partition="surface"`` may take; by default
-        0.25, and 0.1 for ``norm="max"`` with ``target_vertices``.
+        0.25, and 0.1 for ``norm="max"`` with ``target_vertices``. Twice that share while more than
+        twice ``target_vertices`` are left.
 
     Returns
     -------

@@ -24,6 +24,11 @@ NORMS = ("rms", "max")
 #: many times what the cheapest ones do: cheap terrain goes first, whatever its share. Where only
 #: the number of levels is given, each level takes its full share.
 COST_RATIO = 8.0
+#: While more than FAR times the target are left, a level may take FAR_FACTOR times the share, and
+#: vertices that are dearer: what goes then hardly adds to the error in the end.
+FAR = 2
+FAR_FACTOR = 2.0
+FAR_COST_RATIO = 64.0
 #: Costs beyond this multiple of the last level's dearest are not worked out: the first with a size
 #: or a tolerance; the second where each level takes its full share, which needs more to choose from.
 FORESIGHT = 2.0
@@ -53,10 +58,11 @@ class SurfaceRules(NamedTuple):
     max_error: float = np.inf
     max_rms: float = np.inf
 
-    @property
-    def cost_ratio(self) -> float:
-        """How much dearer than the cheapest the vertices of one level may be."""
-        return COST_RATIO if self.has_aim else np.inf
+    def share_of(self, n_vertices: int) -> tuple[float, float]:
+        """Return which share a level may take, and how much dearer than its cheapest."""
+        if self.target_vertices > 0 and n_vertices > FAR * self.target_vertices:
+            return min(FAR_FACTOR * self.removal_fraction, 1.0), FAR_COST_RATIO
+        return self.removal_fraction, COST_RATIO if self.has_aim else np.inf
 
     @property
     def foresight(self) -> float:
@@ -170,9 +176,10 @@ def _take_step(
 
 def _candidates(level: SurfaceLevel, rules: SurfaceRules, cutoff: float) -> NDArray[np.int32]:
     """Return the slots that may go; dearer ones are looked at where few others are left."""
+    fraction, cost_ratio = rules.share_of(level.n_vertices)
     level.rank(rules.norm, rules.max_error, cutoff)
-    slots = level.candidates(rules.removal_fraction, cutoff, rules.cost_ratio)
+    slots = level.candidates(fraction, cutoff, cost_ratio)
     if cutoff < np.inf and len(slots) < LEAST_PROGRESS * level.n_vertices:
         level.rank(rules.norm, rules.max_error, np.inf)
-        slots = level.candidates(rules.removal_fraction, np.inf, rules.cost_ratio)
+        slots = level.candidates(fraction, np.inf, cost_ratio)
     return slots

@@ -102,7 +102,7 @@ class FilterLevels(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterNumber(
-                "PYRAMIDS", self.tr("Number of pyramids averaged"), INTEGER, 24, minValue=0
+                "PYRAMIDS", self.tr("Number of pyramids averaged"), INTEGER, 8, minValue=0
             ),
             self.tr(
                 "Pyramids in random order, each denoised, whose average leaves no traces of "
