@@ -36,6 +36,7 @@ def test_the_plugin_repository_finds_what_it_asks_for():
     assert metadata["qgisMinimumVersion"] == "3.28"
     assert metadata["qgisMaximumVersion"] == "4.99"
     assert metadata["hasProcessingProvider"] == "yes"
+    assert (ROOT / metadata["icon"]).is_file()
 
 
 def test_the_changelog_tells_of_this_version_or_of_what_comes():

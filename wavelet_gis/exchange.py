@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import quoteattr  # nosec B406: nothing is parsed, only written
 
 import numpy as np
 from numpy.typing import NDArray
