@@ -112,7 +112,7 @@ def write_dxf(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
         ezdxf is absent.
     """
     try:
-        import ezdxf.filemanagement
+        import ezdxf
     except ImportError as error:
         raise MissingDependencyError(
             "DXF is written by ezdxf, which is not installed; 'pip install ezdxf' mends it."
