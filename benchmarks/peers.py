@@ -327,17 +327,21 @@ def plot(results: list[dict], path: str) -> None:
     size = (4.2 * len(dems), 7.5)
     figure, axes = pyplot.subplots(2, len(dems), figsize=size, squeeze=False, layout="constrained")
     colours = dict(zip(PEERS, pyplot.get_cmap("tab20").colors, strict=False))
+    labelled: set[str] = set()
     for column, dem in enumerate(dems):
         for peer in PEERS:
             mine = [r for r in results if r["dem"] == dem and r["peer"] == peer and r["rmse"] > 0]
+            if not mine:
+                continue
             mine.sort(key=lambda r: r["n_vertices"])
             style = {
                 "color": colours[peer],
                 "marker": "o",
                 "ms": 3.5,
                 "lw": 2.4 if peer.startswith("ours") else 1.1,
-                "label": peer if column == 0 else None,
+                "label": None if peer in labelled else peer,
             }
+            labelled.add(peer)
             rmse = [r["rmse"] for r in mine]
             axes[0, column].loglog([r["n_vertices"] for r in mine], rmse, **style)
             axes[1, column].loglog([r["seconds"] for r in mine], rmse, **style | {"label": None})
