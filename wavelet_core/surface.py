@@ -30,7 +30,7 @@ FAR = 2
 FAR_FACTOR = 2.0
 FAR_COST_RATIO = 64.0
 #: Costs beyond this multiple of the last level's dearest are not worked out: the first with a size
-#: or a tolerance; the second where each level takes its full share, which needs more to choose from.
+#: or a tolerance; the second where each level takes its full share, which needs more choice.
 FORESIGHT = 2.0
 FULL_FORESIGHT = 4.0
 #: With an update and a tolerance, how often a level is tried with fewer vertices.

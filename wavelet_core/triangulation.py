@@ -77,7 +77,8 @@ def delaunay_faces(plan: FloatArray, edges: IntArray | None = None) -> IntArray:
     """
     if len(plan) < 3:
         raise MeshError(
-            f"{len(plan)} different points cannot be triangulated; give at least three."
+            f"the points lie at {len(plan)} different places in plan, too few to triangulate; give "
+            "at least three."
         )
     _require_not_collinear(plan)
     try:

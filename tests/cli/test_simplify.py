@@ -45,6 +45,13 @@ def test_fitted_heights_have_the_smaller_mean_square(done, dem, tmp_path):
     assert as_fitted["n_vertices"] == as_lifted["n_vertices"] == 150
 
 
+def test_smaller_levels_have_the_smaller_error(done, dem, tmp_path):
+    arguments = ("simplify", dem, tmp_path / "out.ply", "--vertices", 150, "--json", "--overwrite")
+    small, large = (done(*arguments, "--removal-fraction", f).figures for f in (0.05, 1))
+    assert small["n_levels"] > large["n_levels"]
+    assert small["rmse"] < large["rmse"]
+
+
 def test_max_norm_has_the_smaller_largest_error(done, dem, tmp_path):
     by_norm = {
         norm: done(

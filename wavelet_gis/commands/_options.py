@@ -76,6 +76,13 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--signal", metavar="z|xyz", help="lift elevation and attributes, or x and y too"
     )
+    group.add_argument(
+        "--removal-fraction",
+        type=float,
+        metavar="F",
+        help="largest share of the vertices that a level may take; smaller ones are slower and "
+        "better",
+    )
     group.add_argument("--bending-weight", type=float, metavar="W", help="of the paper's cost")
     group.add_argument(
         "--attribute-weights",
@@ -97,6 +104,7 @@ def analysis_options(arguments: argparse.Namespace) -> dict[str, Any]:
         "prediction": arguments.prediction,
         "update": arguments.update,
         "signal": arguments.signal,
+        "removal_fraction": arguments.removal_fraction,
         "bending_weight": arguments.bending_weight,
         "attribute_weights": arguments.attribute_weights,
     }
