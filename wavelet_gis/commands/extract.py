@@ -43,6 +43,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="M",
         help="the least with no input vertex further off, vertically; in the unit of z",
     )
+    add_raster_arguments(parser)
+    add_overwrite_argument(parser)
+
+
+def add_raster_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a TIN that is written as a raster."""
     raster = parser.add_argument_group("raster")
     raster.add_argument(
         "--cell-size",
@@ -53,27 +59,49 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     raster.add_argument("--attribute", metavar="NAME", help="an attribute instead of the elevation")
     raster.add_argument("--cog", action="store_true", help="write a cloud-optimised GeoTIFF")
-    add_overwrite_argument(parser)
 
 
-def run(arguments: argparse.Namespace, console: Console) -> None:
-    """Carry the command out."""
+def is_raster_output(arguments: argparse.Namespace, source: str) -> bool:
+    """Return whether the output is a raster, once it is one that may be written.
+
+    Parameters
+    ----------
+    arguments : argparse.Namespace
+        With the output and the options of a raster.
+    source : str
+        The file that is read, which the output may not replace.
+
+    Raises
+    ------
+    OutputFileError
+        An output that is there already, of another suffix, or the source itself.
+    OptionError
+        Options of a raster for what is none.
+    """
     from wavelet_core.errors import OptionError
-    from wavelet_gis.atomic import check_output, new_file
+    from wavelet_gis.atomic import check_output
     from wavelet_gis.meshfiles import MESH_SUFFIXES
-    from wavelet_gis.pyramid_file import read_pyramid
 
     check_output(
         arguments.output,
         overwrite=arguments.overwrite,
         suffixes=(".gpkg", *MESH_SUFFIXES, *RASTER_SUFFIXES),
-        inputs=(arguments.file,),
+        inputs=(source,),
     )
     is_raster = Path(arguments.output).suffix.lower() in RASTER_SUFFIXES
     if not is_raster and (arguments.cell_size is not None or arguments.attribute or arguments.cog):
         raise OptionError(
             "--cell-size, --attribute and --cog are for rasters; give an output ending in .tif."
         )
+    return is_raster
+
+
+def run(arguments: argparse.Namespace, console: Console) -> None:
+    """Carry the command out."""
+    from wavelet_gis.atomic import new_file
+    from wavelet_gis.pyramid_file import read_pyramid
+
+    is_raster = is_raster_output(arguments, arguments.file)
     record = read_pyramid(arguments.file)
     mesh, vertex_ids, level = _wanted(record, arguments)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from time import perf_counter
 
 from wavelet_gis.commands._options import (
@@ -13,7 +12,13 @@ from wavelet_gis.commands._options import (
     analysis_options,
     open_input,
 )
-from wavelet_gis.commands.extract import RASTER_SUFFIXES, length, write_raster, write_tin
+from wavelet_gis.commands.extract import (
+    add_raster_arguments,
+    is_raster_output,
+    length,
+    write_raster,
+    write_tin,
+)
 from wavelet_gis.console import Console
 
 HELP = (
@@ -47,12 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="keep the heights of the pyramid's level instead of fitting them to all input points",
     )
-    raster = parser.add_argument_group("raster")
-    raster.add_argument(
-        "--cell-size", type=length, metavar="SIZE", help="by default the grid of the input"
-    )
-    raster.add_argument("--attribute", metavar="NAME", help="an attribute instead of the elevation")
-    raster.add_argument("--cog", action="store_true", help="write a cloud-optimised GeoTIFF")
+    add_raster_arguments(parser)
     add_input_arguments(parser)
     add_wavelet_arguments(parser)
     add_overwrite_argument(parser)
@@ -62,24 +62,13 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     import numpy as np
 
-    from wavelet_core import OptionError, analyse
+    from wavelet_core import analyse
     from wavelet_core.fitting import fitted
     from wavelet_core.metrics import surface_errors
-    from wavelet_gis.atomic import check_output, new_file
-    from wavelet_gis.meshfiles import MESH_SUFFIXES
+    from wavelet_gis.atomic import new_file
     from wavelet_gis.record import PyramidRecord
 
-    check_output(
-        arguments.output,
-        overwrite=arguments.overwrite,
-        suffixes=(".gpkg", *MESH_SUFFIXES, *RASTER_SUFFIXES),
-        inputs=(arguments.input,),
-    )
-    is_raster = Path(arguments.output).suffix.lower() in RASTER_SUFFIXES
-    if not is_raster and (arguments.cell_size is not None or arguments.attribute or arguments.cog):
-        raise OptionError(
-            "--cell-size, --attribute and --cog are for rasters; give an output ending in .tif."
-        )
+    is_raster = is_raster_output(arguments, arguments.input)
     began = perf_counter()
     terrain = open_input(arguments)
     unit = terrain.frame.z_scale
