@@ -26,7 +26,7 @@ from numba import njit
 from scipy.spatial import cKDTree
 
 from wavelet_core import TriangleMesh, analyse
-from wavelet_gis.pointcloud import read_cloud
+from wavelet_gis.io.las import read_cloud
 
 #: Square cells of the point locator hold about this many points.
 POINTS_IN_CELL = 4

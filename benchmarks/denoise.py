@@ -20,7 +20,7 @@ from scipy import ndimage
 from skimage.restoration import denoise_nl_means, denoise_wavelet
 
 from wavelet_core import TriangleMesh, analyse, denoise
-from wavelet_core.coefficients import estimate_noise
+from wavelet_core.filtering.noise import estimate_noise
 
 #: file, first row and column of a window of 400 x 400 cells, cell size and noise in metres
 DEMS = (
@@ -134,7 +134,7 @@ def row(path, top, left, cell, sigma, n_pyramids, only_ours):
 
 def lidar_profile(data, pictures):
     """Tell roughness, breaklines and movement of LiDAR points, and draw a profile with a house."""
-    from wavelet_gis.terrain import open_terrain
+    from wavelet_gis.workflows.open import open_terrain
 
     path = data / "clouds" / "ign_tiles_77055_627755.laz"
     for title, classes in (("ground", (2,)), ("ground and roofs", (2, 6))):

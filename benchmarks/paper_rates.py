@@ -18,7 +18,7 @@ from time import perf_counter
 import numpy as np
 
 from wavelet_core import WaveletError, analyse
-from wavelet_gis.terrain import CLOUD_SUFFIXES, open_terrain
+from wavelet_gis.workflows.open import CLOUD_SUFFIXES, open_terrain
 
 PREDICTIONS = ("UG", "CL", "GL", "NNLS")
 UPDATES = ("MN", "ORMP", "MO")

@@ -18,7 +18,7 @@ import pyogrio
 import rasterio
 import shapely
 
-from wavelet_gis.cli import main
+from wavelet_gis.cli.main import main
 
 matplotlib.use("Agg")
 from matplotlib import pyplot

@@ -21,11 +21,11 @@ from matplotlib.colors import LightSource, LinearSegmentedColormap, LogNorm
 from pyproj import CRS
 from scipy.ndimage import gaussian_filter
 
-from wavelet_gis.cli import main as terrain_wavelets
-from wavelet_gis.dem import Dem, GridGeometry
-from wavelet_gis.pyramid_file import read_pyramid
-from wavelet_gis.raster import read_dem, write_dem
-from wavelet_gis.rasterise import rasterise
+from wavelet_gis.cli.main import main as terrain_wavelets
+from wavelet_gis.io.pyramid_file import read_pyramid
+from wavelet_gis.io.raster import read_dem, write_dem
+from wavelet_gis.model.dem import Dem, GridGeometry
+from wavelet_gis.products.rasterise import rasterise
 
 #: Vertices of the coarsest level; shares of the input's vertices that the picture shows beside it.
 TARGET_VERTICES = 2000

@@ -11,11 +11,11 @@ from qgis.core import (
 )
 from qgis.PyQt.QtGui import QIcon
 
-from . import dependencies
-from .packages import install_finder
-from .translation import tr
-from .warning_log import shown_in
-from .wording import for_dialog
+from .packages import ICON, install_finder
+from .ui import dependencies
+from .ui.translation import tr
+from .ui.warning_log import shown_in
+from .ui.wording import for_dialog
 
 ADVANCED = QgsProcessingParameterDefinition.Flag.FlagAdvanced
 
@@ -55,14 +55,10 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
 
     def icon(self):
         """Return the provider's icon."""
-        from .provider import ICON
-
         return QIcon(ICON)
 
     def svgIconPath(self):
         """Return the file of the provider's icon."""
-        from .provider import ICON
-
         return ICON
 
     def about(self):
@@ -108,7 +104,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         install_finder()
         from wavelet_core.errors import WaveletError
 
-        from .output_check import check_outputs
+        from .parameters.output_check import check_outputs
 
         try:
             check_outputs(self, parameters, context)

@@ -13,6 +13,7 @@ from importlib.machinery import PathFinder
 from pathlib import Path
 
 PLUGIN_FOLDER = Path(__file__).resolve().parent.parent
+ICON = str(PLUGIN_FOLDER / "plugin" / "icons" / "terrain_wavelets.svg")
 OWN_PACKAGES = ("wavelet_core", "wavelet_gis")
 
 

@@ -7,7 +7,7 @@ from qgis.PyQt.QtCore import QCoreApplication, QLocale, QTranslator
 
 from .packages import PLUGIN_FOLDER, install_finder, remove_finder
 from .provider import TerrainWaveletsProvider
-from .warning_log import uninstall
+from .ui.warning_log import uninstall
 
 
 class TerrainWaveletsPlugin:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from qgis.core import QgsProcessingModelAlgorithm, QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
 from .algorithms import ALGORITHMS
-from .packages import PLUGIN_FOLDER
-from .translation import tr
+from .packages import ICON, PLUGIN_FOLDER
+from .ui.translation import tr
 
-ICON = str(Path(__file__).resolve().parent / "icons" / "terrain_wavelets.svg")
 MODELS = PLUGIN_FOLDER / "processing_models"
 
 

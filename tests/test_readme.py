@@ -30,7 +30,7 @@ def test_there_is_a_python_block(page):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_commands_are_those_of_the_program(page):
-    from wavelet_gis import commands
+    from wavelet_gis.cli import commands
 
     folder = Path(commands.__file__).parent
     known = {path.stem for path in folder.glob("[!_]*.py")}

@@ -1,8 +1,6 @@
 """Reversible multiresolution pyramids of terrain TINs by graph-based wavelet lifting."""
 
-from . import coefficients, metrics, synthetic
-from .analysis import analyse
-from .denoising import denoise
+from . import metrics, synthetic
 from .errors import (
     Cancelled,
     FilterError,
@@ -13,9 +11,12 @@ from .errors import (
     SlowFallbackWarning,
     WaveletError,
 )
-from .lifting import FilterPair, Step
-from .mesh import TriangleMesh
-from .pyramid import Detail, Pyramid
+from .filtering.denoise import denoise
+from .lifting.analyse import analyse
+from .lifting.pyramid import Detail, Pyramid
+from .lifting.spacings import level_spacings
+from .lifting.step import FilterPair, Step
+from .mesh.triangle_mesh import TriangleMesh
 
 __all__ = [
     "Cancelled",
@@ -32,8 +33,8 @@ __all__ = [
     "TriangleMesh",
     "WaveletError",
     "analyse",
-    "coefficients",
     "denoise",
+    "level_spacings",
     "metrics",
     "synthetic",
 ]

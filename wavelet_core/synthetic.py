@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ._validate import FloatArray
-from .mesh import TriangleMesh
+from .mesh.triangle_mesh import TriangleMesh
 
 
 def hills(n_rows: int = 60, n_columns: int = 80, cell: float = 10.0) -> TriangleMesh:

@@ -11,7 +11,7 @@ from scipy import ndimage
 from scipy.interpolate import RegularGridInterpolator
 
 from wavelet_core import TriangleMesh
-from wavelet_gis.terrain import open_terrain
+from wavelet_gis.workflows.open import open_terrain
 
 
 @dataclass(frozen=True)

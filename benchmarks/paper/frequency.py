@@ -10,8 +10,8 @@ import rasterio
 from scipy.stats import spearmanr
 
 from wavelet_core import TriangleMesh, analyse
-from wavelet_core.connectivity import build_connectivity
-from wavelet_gis.terrain import open_terrain
+from wavelet_core.mesh.connectivity import build_connectivity
+from wavelet_gis.workflows.open import open_terrain
 
 from .rmse import shade
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from wavelet_core import Pyramid, analyse
-from wavelet_core.metrics import level_errors
+from wavelet_core.accuracy.level_errors import level_errors
 
 from .clouds import Sample
 

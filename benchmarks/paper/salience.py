@@ -9,9 +9,9 @@ import numpy as np
 import rasterio
 
 from wavelet_core import Pyramid, TriangleMesh, analyse
-from wavelet_core.connectivity import build_connectivity
-from wavelet_core.geometry import squared_curvature_sums
-from wavelet_core.metrics import surface_errors
+from wavelet_core.mesh.connectivity import build_connectivity
+from wavelet_core.mesh.curvature import squared_curvature_sums
+from wavelet_core.mesh.location import surface_errors
 
 from .rmse import shade
 

@@ -9,7 +9,7 @@ from qgis.core import (
 )
 
 from ..base import TerrainWaveletsAlgorithm
-from ..design import (
+from ..parameters.analysis_options import (
     add_design_parameters,
     add_rule_parameters,
     design_options,
@@ -24,7 +24,7 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
 
     def add_analysis_parameters(self):
         """Declare the design, the pyramid file, the coarse TIN and the figures."""
-        from ..pyramids import add_figure_outputs
+        from ..parameters.pyramid import add_figure_outputs
 
         add_rule_parameters(self)
         add_design_parameters(self)
@@ -50,15 +50,16 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         add_figure_outputs(self)
 
     def terrain(self, parameters, context, feedback):
-        """Return the ``wavelet_gis.terrain.Terrain`` that the parameters name."""
+        """Return the ``wavelet_gis.model.terrain.Terrain`` that the parameters name."""
         raise AssertionError(f"{self.name()} reads no terrain")
 
     def work(self, parameters, context, feedback):
         """Read, analyse, measure, write."""
         from wavelet_core import analyse
 
-        from .. import pyramids, tin_output
-        from ..bridge import progress, require_running
+        from ..parameters import pyramid as pyramids
+        from ..parameters import tin_output
+        from ..qgis_io.crs_and_progress import progress, require_running
 
         output = self.parameterAsFileOutput(parameters, "OUTPUT", context)
         terrain = self.terrain(parameters, context, feedback)

@@ -8,7 +8,7 @@ from qgis.core import (
     QgsProcessingParameterRasterLayer,
 )
 
-from ..design import vertical_unit
+from ..parameters.analysis_options import vertical_unit
 
 
 class DemInput:
@@ -30,7 +30,7 @@ class DemInput:
 
     def prepare(self, parameters, context, feedback):
         """Take from the layer, in its own thread, what reading it needs."""
-        from ..rasters import RasterInput
+        from ..qgis_io.raster_reader import RasterInput
 
         layer = self.parameterAsRasterLayer(parameters, "INPUT", context)
         if layer is None or not layer.isValid():
@@ -41,10 +41,10 @@ class DemInput:
 
     def terrain(self, parameters, context, feedback):
         """Return the terrain in the layer."""
-        from wavelet_gis.terrain import terrain_of_dem
+        from wavelet_gis.model.terrain import terrain_of_dem
 
-        from ..bridge import coordinate_system
-        from ..rasters import read_dem
+        from ..qgis_io.crs_and_progress import coordinate_system
+        from ..qgis_io.raster_reader import read_dem
 
         feedback.setProgressText(self.tr("Reading the DEM"))
         return terrain_of_dem(

@@ -40,7 +40,7 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
 
     def record(self, parameters, context, feedback):
         """Return the ``PyramidRecord`` in the file."""
-        from ..pyramids import load
+        from ..parameters.pyramid import load
 
         feedback.setProgressText(self.tr("Reading the pyramid"))
         record = load(self.pyramid_path(parameters, context))

@@ -13,8 +13,13 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from .. import dependencies
-from ..design import add_weights_parameter, vertical_unit, weight_options, weights_refusal
+from ..parameters.analysis_options import (
+    add_weights_parameter,
+    vertical_unit,
+    weight_options,
+    weights_refusal,
+)
+from ..ui import dependencies
 from ._analysis import AnalysisAlgorithm
 
 #: Dimensions that are offered by name; any other can be written in.
@@ -130,10 +135,10 @@ class AnalysePointCloud(AnalysisAlgorithm):
         """Return the terrain in the file."""
         from qgis.core import QgsCoordinateReferenceSystem
 
-        from wavelet_gis.pointcloud import read_cloud
-        from wavelet_gis.terrain import terrain_of_cloud
+        from wavelet_gis.io.las import read_cloud
+        from wavelet_gis.model.terrain import terrain_of_cloud
 
-        from ..bridge import coordinate_system, require_running
+        from ..qgis_io.crs_and_progress import coordinate_system, require_running
 
         path = self.parameterAsFile(parameters, "INPUT", context)
         feedback.setProgressText(self.tr("Reading the points"))
@@ -164,7 +169,7 @@ class AnalysePointCloud(AnalysisAlgorithm):
 
     def more_options(self, parameters, context, terrain):
         """Return the weights of the attributes."""
-        from wavelet_gis.pointcloud import ALIASES
+        from wavelet_gis.io.las import ALIASES
 
         names_of_dimension = {}
         for attribute in terrain.original.attributes:

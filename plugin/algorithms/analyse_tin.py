@@ -11,8 +11,13 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from .. import dependencies
-from ..design import add_weights_parameter, vertical_unit, weight_options, weights_refusal
+from ..parameters.analysis_options import (
+    add_weights_parameter,
+    vertical_unit,
+    weight_options,
+    weights_refusal,
+)
+from ..ui import dependencies
 from ._analysis import AnalysisAlgorithm
 
 
@@ -136,9 +141,9 @@ class AnalyseTin(AnalysisAlgorithm):
 
     def terrain(self, parameters, context, feedback):
         """Return the terrain in the layers."""
-        from wavelet_gis.tin import TinTerrain, frame_of_coordinates
+        from wavelet_gis.model.tin import TinTerrain, frame_of_coordinates
 
-        from ..bridge import coordinate_system
+        from ..qgis_io.crs_and_progress import coordinate_system
 
         system = coordinate_system(self.source.sourceCrs())
         unit = vertical_unit(self, parameters, context)
@@ -161,9 +166,9 @@ class AnalyseTin(AnalysisAlgorithm):
         return options
 
     def _mesh_of_triangles(self, name, system, unit, feedback):
-        from wavelet_gis.tin import frame_of_coordinates, mesh_of_corners
+        from wavelet_gis.model.tin import frame_of_coordinates, mesh_of_corners
 
-        from ..vectors import read_triangles
+        from ..qgis_io.vectors import read_triangles
 
         if self.breaklines is not None or self.clip is not None:
             raise QgsProcessingException(
@@ -182,7 +187,7 @@ class AnalyseTin(AnalysisAlgorithm):
         )
 
     def _points(self, parameters, context, feedback):
-        from ..vectors import read_points
+        from ..qgis_io.vectors import read_points
 
         feedback.setProgressText(self.tr("Reading the points"))
         self.attribute_names = self.parameterAsStrings(parameters, "ATTRIBUTES", context)
@@ -197,10 +202,10 @@ class AnalyseTin(AnalysisAlgorithm):
     def _mesh_of_points(self, parameters, context, points, frame, feedback):
         import numpy as np
 
-        from wavelet_gis.tin import tin_with_lines
+        from wavelet_gis.model.tin import tin_with_lines
 
-        from ..bridge import require_running
-        from ..lines import read_constraints
+        from ..qgis_io.constraints import read_constraints
+        from ..qgis_io.crs_and_progress import require_running
 
         constraints = read_constraints(
             self.breaklines,

@@ -19,8 +19,8 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from .. import dependencies
-from ..design import DOUBLE, INTEGER, choice
+from ..parameters.analysis_options import DOUBLE, INTEGER, choice
+from ..ui import dependencies
 from ._pyramid_input import PyramidAlgorithm
 
 METHODS = ("kmeans", "mixture")
@@ -207,7 +207,7 @@ class ClusterDetails(PyramidAlgorithm):
 
     def work(self, parameters, context, feedback):
         """Find or learn the labels, then write what was asked for."""
-        from wavelet_gis.classify import cluster_summary
+        from wavelet_gis.workflows.classify import cluster_summary
 
         record = self.record(parameters, context, feedback)
         is_learned = self._teacher(parameters, context) != TEACHERS[0]
@@ -226,7 +226,7 @@ class ClusterDetails(PyramidAlgorithm):
         )
         path = self.parameterAsFileOutput(parameters, "SUMMARY", context)
         if path:
-            from wavelet_gis.atomic import new_file
+            from wavelet_gis.io.atomic import new_file
 
             with new_file(path, overwrite=True) as scratch:
                 scratch.write_text(json.dumps(summary, indent=1), encoding="utf-8")
@@ -234,10 +234,10 @@ class ClusterDetails(PyramidAlgorithm):
         return results
 
     def _clusters(self, parameters, context, record, feedback):
-        from wavelet_core.signature import energy_signature
-        from wavelet_gis.classify import cluster_vertices
+        from wavelet_core.features.signature import energy_signature
+        from wavelet_gis.workflows.classify import cluster_vertices
 
-        from ..bridge import progress, require_running
+        from ..qgis_io.crs_and_progress import progress, require_running
 
         text = self.parameterAsString(parameters, "CHANNELS", context)
         channels = tuple(name.strip() for name in text.split(",") if name.strip())
@@ -258,10 +258,10 @@ class ClusterDetails(PyramidAlgorithm):
     def _classes(self, parameters, context, record, feedback):
         import numpy as np
 
-        from wavelet_core.signature import plain_features, scale_features
-        from wavelet_gis.classify import learn_classes, spatial_folds, validate_classes
+        from wavelet_core.features.signature import plain_features, scale_features
+        from wavelet_gis.workflows.classify import learn_classes, spatial_folds, validate_classes
 
-        from ..bridge import progress, require_running
+        from ..qgis_io.crs_and_progress import progress, require_running
 
         given = self._given(parameters, context, record, feedback)
         feedback.setProgressText(self.tr("Gathering the spectrum of each vertex"))
@@ -285,11 +285,11 @@ class ClusterDetails(PyramidAlgorithm):
 
     def _given(self, parameters, context, record, feedback):
         if self._teacher(parameters, context) == TEACHERS[2]:
-            from wavelet_gis.labels import labels_from_las
+            from wavelet_gis.workflows.labels import labels_from_las
 
             return labels_from_las(record, self._unlabelled(parameters, context))
-        from ..pyramids import crs_of
-        from ..training import labels_inside
+        from ..parameters.pyramid import crs_of
+        from ..qgis_io.training import labels_inside
 
         field = self.parameterAsString(parameters, "CLASS_FIELD", context)
         positions = record.frame.to_file(record.pyramid.synthesise().vertices)
@@ -303,12 +303,13 @@ class ClusterDetails(PyramidAlgorithm):
         return given
 
     def _written(self, parameters, context, record, labels, confidence, name, feedback):
-        from wavelet_gis.bands import label_band
-        from wavelet_gis.label_layer import label_layer
+        from wavelet_gis.products.label_layer import label_layer
+        from wavelet_gis.products.vertex_raster import label_band
 
-        from .. import styles, tin_output
-        from ..pyramids import cell_size, crs_of
-        from ..raster_output import write_bands
+        from ..parameters import tin_output
+        from ..parameters.pyramid import cell_size, crs_of
+        from ..qgis_io.raster_writer import write_bands
+        from ..ui import layer_styles as styles
 
         results = {}
         path = self.parameterAsOutputLayer(parameters, "RASTER", context)

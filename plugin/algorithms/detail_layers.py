@@ -11,7 +11,7 @@ from qgis.core import (
     QgsProcessingParameterRasterDestination,
 )
 
-from ..design import DOUBLE, INTEGER
+from ..parameters.analysis_options import DOUBLE, INTEGER
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -110,11 +110,12 @@ class DetailLayers(PyramidAlgorithm):
         """Walk the levels from coarse to fine and add their points."""
         import numpy as np
 
-        from wavelet_gis.layers import detail_layers
+        from wavelet_gis.products.layers import detail_layers
 
-        from .. import styles, vectors
-        from ..bridge import require_running
-        from ..pyramids import checked_level, crs_of
+        from ..parameters.pyramid import checked_level, crs_of
+        from ..qgis_io import vectors
+        from ..qgis_io.crs_and_progress import require_running
+        from ..ui import layer_styles as styles
 
         record = self.record(parameters, context, feedback)
         n_levels = record.pyramid.n_levels
@@ -164,12 +165,12 @@ class DetailLayers(PyramidAlgorithm):
         return results
 
     def _write_energy(self, parameters, context, record, feedback):
-        from wavelet_gis.bands import value_bands
-        from wavelet_gis.details import band_names, energy_columns
+        from wavelet_gis.products.vertex_raster import value_bands
+        from wavelet_gis.products.vertex_tables import band_names, energy_columns
 
-        from ..bridge import progress
-        from ..pyramids import cell_size, crs_of
-        from ..raster_output import write_bands
+        from ..parameters.pyramid import cell_size, crs_of
+        from ..qgis_io.crs_and_progress import progress
+        from ..qgis_io.raster_writer import write_bands
 
         path = self.parameterAsOutputLayer(parameters, "ENERGY", context)
         feedback.setProgressText(self.tr("Gathering the energy of each level"))

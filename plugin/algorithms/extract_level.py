@@ -11,8 +11,8 @@ from qgis.core import (
     QgsProcessingParameterRasterDestination,
 )
 
-from ..design import DOUBLE, INTEGER
-from ..mesh_output import add_mesh_parameter, mesh_packages
+from ..parameters.analysis_options import DOUBLE, INTEGER
+from ..parameters.mesh_output import add_mesh_parameter, mesh_packages
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -112,9 +112,9 @@ class ExtractLevel(PyramidAlgorithm):
 
     def work(self, parameters, context, feedback):
         """Synthesise the level and write what was asked for."""
-        from .. import mesh_output, tin_output
-        from ..bridge import require_running
-        from ..pyramids import checked_level, level_figures
+        from ..parameters import mesh_output, tin_output
+        from ..parameters.pyramid import checked_level, level_figures
+        from ..qgis_io.crs_and_progress import require_running
 
         record = self.record(parameters, context, feedback)
         level = checked_level(record, self.parameterAsInt(parameters, "LEVEL", context))

@@ -13,9 +13,9 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from .. import dependencies
-from ..design import DOUBLE, INTEGER, matrix_pairs
-from ..restored_output import add_restored_outputs, nothing_written, write_restored
+from ..parameters.analysis_options import DOUBLE, INTEGER, matrix_pairs
+from ..parameters.restored_output import add_restored_outputs, nothing_written, write_restored
+from ..ui import dependencies
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -203,15 +203,15 @@ class FilterLevels(PyramidAlgorithm):
 
     def work(self, parameters, context, feedback):
         """Filter, then write what was asked for."""
-        from wavelet_gis.filtering import (
+        from wavelet_gis.workflows.filtering import (
             change_between,
             chosen_gains,
             denoised_record,
             scaled_record,
         )
 
-        from .. import pyramids
-        from ..bridge import progress, require_running
+        from ..parameters import pyramid as pyramids
+        from ..qgis_io.crs_and_progress import progress, require_running
 
         before = self.record(parameters, context, feedback)
         record, results = before, {}
@@ -252,10 +252,10 @@ class FilterLevels(PyramidAlgorithm):
         return results
 
     def _difference(self, parameters, context, before, after, feedback):
-        from wavelet_gis.surface import surface_difference
+        from wavelet_gis.products.level_raster import surface_difference
 
-        from ..pyramids import crs_of
-        from ..raster_output import write_dem
+        from ..parameters.pyramid import crs_of
+        from ..qgis_io.raster_writer import write_dem
 
         path = self.parameterAsOutputLayer(parameters, "DIFFERENCE", context)
         if not path:

@@ -42,7 +42,7 @@ class QualityReport(PyramidAlgorithm):
 
     def initAlgorithm(self, configuration=None):
         """Declare parameters and outputs."""
-        from ..pyramids import add_figure_outputs
+        from ..parameters.pyramid import add_figure_outputs
 
         self.add_pyramid_parameter()
         self.add(
@@ -85,11 +85,11 @@ class QualityReport(PyramidAlgorithm):
 
     def work(self, parameters, context, feedback):
         """Measure, draw, write."""
-        from wavelet_gis.atomic import new_file
-        from wavelet_gis.report import report_page
+        from wavelet_gis.io.atomic import new_file
+        from wavelet_gis.report.page import report_page
 
-        from ..bridge import progress
-        from ..pyramids import figures
+        from ..parameters.pyramid import figures
+        from ..qgis_io.crs_and_progress import progress
 
         record = self.record(parameters, context, feedback)
         feedback.setProgressText(self.tr("Measuring and drawing"))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from qgis.core import QgsProcessingOutputNumber, QgsProcessingOutputString
 
-from .. import dependencies
-from ..restored_output import add_restored_outputs, nothing_written, write_restored
+from ..parameters.restored_output import add_restored_outputs, nothing_written, write_restored
+from ..ui import dependencies
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -57,7 +57,7 @@ class Reconstruct(PyramidAlgorithm):
 
     def work(self, parameters, context, feedback):
         """Synthesise, restore, write what was asked for."""
-        from ..bridge import require_running
+        from ..qgis_io.crs_and_progress import require_running
 
         record = self.record(parameters, context, feedback)
         feedback.setProgress(30)

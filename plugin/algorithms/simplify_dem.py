@@ -14,8 +14,8 @@ from qgis.core import (
 )
 
 from ..base import TerrainWaveletsAlgorithm
-from ..design import DOUBLE, INTEGER, add_design_parameters, design_options
-from ..mesh_output import add_mesh_parameter, mesh_packages
+from ..parameters.analysis_options import DOUBLE, INTEGER, add_design_parameters, design_options
+from ..parameters.mesh_output import add_mesh_parameter, mesh_packages
 from ._dem_input import DemInput
 
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
@@ -143,10 +143,11 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
     def work(self, parameters, context, feedback):
         """Read, simplify, measure, write what was asked for."""
         from wavelet_core import analyse
-        from wavelet_core.fitting import fitted
+        from wavelet_core.accuracy.fitted_heights import fitted
 
-        from .. import mesh_output, pyramids, tin_output
-        from ..bridge import progress, require_running
+        from ..parameters import mesh_output, tin_output
+        from ..parameters import pyramid as pyramids
+        from ..qgis_io.crs_and_progress import progress, require_running
 
         terrain = self.terrain(parameters, context, feedback)
         feedback.setProgressText(
@@ -204,7 +205,7 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
     def _errors(self, record, coarsest, terrain):
         import numpy as np
 
-        from wavelet_core.metrics import surface_errors
+        from wavelet_core.mesh.location import surface_errors
 
         errors = surface_errors(coarsest, terrain.mesh.vertices) / record.frame.z_scale
         covered = errors[np.isfinite(errors)]

@@ -1144,213 +1144,253 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/dependencies.py"/>
-    <source>Terrain Wavelets needs Python {} or later, and this QGIS runs Python {}; install a newer QGIS.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/dependencies.py"/>
-    <source>The Python package numba is missing: the work runs some hundred times slower and large inputs are refused. Install it {} and start QGIS again.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/dependencies.py"/>
-    <source>in Terminal: {}</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/dependencies.py"/>
-    <source>in a terminal: {}</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/dependencies.py"/>
-    <source>in the OSGeo4W Shell (Start menu, QGIS): {}</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/dependencies.py"/>
-    <source>missing Python package: {names}. Install it {remedy} and start QGIS again.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>&lt;i&gt;z&lt;/i&gt;: elevation and attributes, so that x and y stay and every level is a valid TIN; &lt;i&gt;xyz&lt;/i&gt;: all coordinates, as in the paper, where some triangles of a coarse level may be flipped in plan.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Attribute</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>By default the unit that the CRS states; where it states none, metres for a geographic CRS and the unit of x and y for any other. Results keep the input's unit.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>By what the &lt;i&gt;surface&lt;/i&gt; partition judges: the root mean square (&lt;i&gt;rms&lt;/i&gt;) or the largest error (&lt;i&gt;max&lt;/i&gt;). By default the largest where that is the stop rule.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Error kept small</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>How a removed vertex is estimated from its neighbours; what is left over is its detail. By default &lt;i&gt;barycentric&lt;/i&gt; with the &lt;i&gt;surface&lt;/i&gt; partition, else &lt;i&gt;geometric&lt;/i&gt;. In the paper: &lt;i&gt;geometric&lt;/i&gt; GL, &lt;i&gt;uniform&lt;/i&gt; UG, &lt;i&gt;cotangent&lt;/i&gt; CL, &lt;i&gt;nnls&lt;/i&gt; NNLS (non-negative least squares), &lt;i&gt;least_squares&lt;/i&gt; LS (can be unstable); &lt;i&gt;barycentric&lt;/i&gt;: from the coarse triangle that now covers it; &lt;i&gt;plane&lt;/i&gt;: from the plane fitted to the neighbours.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>How details are handed on to the vertices that stay. In the paper: &lt;i&gt;minimum_norm&lt;/i&gt; MN (keeps the weighted mean height at every level), &lt;i&gt;martinez_ortega&lt;/i&gt; MO, &lt;i&gt;one_ring_mean&lt;/i&gt; ORMP; &lt;i&gt;none&lt;/i&gt; keeps heights as they are (subsampling).</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>How many steps of analysis at most (the paper's L). Each removes about a quarter of the vertices, so 12 levels leave some 2 %. Fewer come out where nothing more can go. Empty for 12, or, with a rule below, for as many as that takes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>How much an attribute counts, against the elevation, in which vertices go and how they are predicted; each is scaled by its range first. 1 where it is not listed, 0 for one that is only carried along.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Largest share removed at a level</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Lifted coordinates</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Most levels</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>No input point is farther above or below the coarsest level, in the unit of elevation.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Partition</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Prediction filter</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Stop at this RMSE</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Stop at this largest error</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Stop at this number of vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>The &lt;i&gt;surface&lt;/i&gt; partition takes at most this share of a level's vertices, between 0 and 1; empty for 0.25. A smaller share makes more levels and takes longer, and the errors are a little smaller.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>The coarsest level has exactly so many vertices, if it can get there.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>The same for the root mean square over all input points, in the unit of elevation.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>There is no attribute {} to be weighted; {}.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Unit of elevation</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Update filter</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weight</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weight of bending energy</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weight of curvature in the cost of the &lt;i&gt;quadric&lt;/i&gt; partition; no unit.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weights are pairs of an attribute and a number of 0 or more, such as intensity and 0.5.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weights of attributes</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Which vertices go at a level (the paper's odd vertices). &lt;i&gt;surface&lt;/i&gt;, the default: those that raise the vertical error at all input points least; &lt;i&gt;quadric&lt;/i&gt;: those of least cost by generalised quadric and bending energy, as in the paper; &lt;i&gt;colouring&lt;/i&gt;: regardless of shape, the paper's baseline; &lt;i&gt;random&lt;/i&gt;: in random order.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>choose the attributes first</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/design.py"/>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>those analysed are: {}</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/geopackage.py"/>
-    <source>{}: layer {} cannot be written ({}); check the disk and the name.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/lines.py"/>
-    <source>{}: there is no breakline here; the TIN is made without.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/lines.py"/>
-    <source>{}: there is no polygon to clip by; check the layer, its filter and selection.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/mesh_output.py"/>
+    <location filename="../../plugin/parameters/mesh_output.py"/>
     <source>The suffix chooses the format. A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models; PLY alone keeps attributes; OBJ, STL and GLB are for 3D viewers and printers; LandXML (.xml) and DXF for CAD. GLB needs the Python package trimesh, DXF ezdxf. STL and GLB hold coordinates from a local origin, which the file tells.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Largest error of the coarsest surface, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Number of levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>RMSE of the coarsest surface at all input points, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>RMSE of the coefficients at the coarsest level (no unit)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>There is no level {}; the levels of this pyramid are 0 (coarsest) to {}.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Triangles of the coarsest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Triangles of the input</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Vertices of the coarsest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Vertices of the input</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>level   vertices  triangles  RMSE of surface  largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/restored_output.py"/>
+    <source>For a pyramid of a DEM.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/restored_output.py"/>
+    <source>For a pyramid of a point cloud file. Needs the Python package laspy.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/restored_output.py"/>
+    <source>LAZ (*.laz);;LAS (*.las)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/restored_output.py"/>
+    <source>The triangles of the finest level, for a pyramid of any kind.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/restored_output.py"/>
+    <source>This pyramid was made from a DEM; choose where the DEM goes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/restored_output.py"/>
+    <source>This pyramid was made from a TIN; choose where the TIN goes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/restored_output.py"/>
+    <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1359,182 +1399,142 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>Largest error of the coarsest surface, in the unit of elevation</source>
+    <location filename="../../plugin/qgis_io/constraints.py"/>
+    <source>{}: there is no breakline here; the TIN is made without.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>Number of levels</source>
+    <location filename="../../plugin/qgis_io/constraints.py"/>
+    <source>{}: there is no polygon to clip by; check the layer, its filter and selection.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>RMSE of the coarsest surface at all input points, in the unit of elevation</source>
+    <location filename="../../plugin/qgis_io/geopackage.py"/>
+    <source>{}: layer {} cannot be written ({}); check the disk and the name.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>RMSE of the coefficients at the coarsest level (no unit)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>There is no level {}; the levels of this pyramid are 0 (coarsest) to {}.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>Triangles of the coarsest level</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>Triangles of the input</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>Vertices of the coarsest level</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>Vertices of the input</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/pyramids.py"/>
-    <source>level   vertices  triangles  RMSE of surface  largest error</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/raster_output.py"/>
-    <source>{}: GDAL could not write this raster ({}); check the disk and the name.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/raster_output.py"/>
-    <source>{}: no raster of {} can be written under this name; use one ending in .tif.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/rasters.py"/>
+    <location filename="../../plugin/qgis_io/raster_reader.py"/>
     <source>{}: band {} holds values of type {}; elevations must be real numbers.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/rasters.py"/>
+    <location filename="../../plugin/qgis_io/raster_reader.py"/>
     <source>{}: the raster cannot be read ({}); the file is damaged, get it again.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/rasters.py"/>
+    <location filename="../../plugin/qgis_io/raster_reader.py"/>
     <source>{}: there is no band {}; the raster has {}.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/restored_output.py"/>
-    <source>For a pyramid of a DEM.</source>
+    <location filename="../../plugin/qgis_io/raster_writer.py"/>
+    <source>{}: GDAL could not write this raster ({}); check the disk and the name.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/restored_output.py"/>
-    <source>For a pyramid of a point cloud file. Needs the Python package laspy.</source>
+    <location filename="../../plugin/qgis_io/raster_writer.py"/>
+    <source>{}: no raster of {} can be written under this name; use one ending in .tif.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/restored_output.py"/>
-    <source>LAZ (*.laz);;LAS (*.las)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/restored_output.py"/>
-    <source>The triangles of the finest level, for a pyramid of any kind.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/restored_output.py"/>
-    <source>This pyramid was made from a DEM; choose where the DEM goes.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/restored_output.py"/>
-    <source>This pyramid was made from a TIN; choose where the TIN goes.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/restored_output.py"/>
-    <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/styles.py"/>
-    <source>level {}</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/training.py"/>
+    <location filename="../../plugin/qgis_io/training.py"/>
     <source>Feature {}: field {} holds {}; classes are whole numbers from 0 to 254.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/vectors.py"/>
+    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>Feature {}: field {} holds {}, which is no number; fill or filter it.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/vectors.py"/>
+    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>The features could not be written ({}); check the disk and the name.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/vectors.py"/>
+    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>{}: feature {} is no triangle; triangulate the layer first, or give a point layer.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/vectors.py"/>
+    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/vectors.py"/>
+    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>{}: the points have no Z; choose the field with the elevation.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/vectors.py"/>
+    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>{}: the triangles have no Z, so they hold no elevations.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/vectors.py"/>
+    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>{}: what cannot be brought into the CRS of the terrain is left out (features: {}); check the CRS of the layer</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/wording.py"/>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>Terrain Wavelets needs Python {} or later, and this QGIS runs Python {}; install a newer QGIS.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>The Python package numba is missing: the work runs some hundred times slower and large inputs are refused. Install it {} and start QGIS again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>in Terminal: {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>in a terminal: {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>in the OSGeo4W Shell (Start menu, QGIS): {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>missing Python package: {names}. Install it {remedy} and start QGIS again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>level {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/wording.py"/>
     <source>another</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/wording.py"/>
+    <location filename="../../plugin/ui/wording.py"/>
     <source>assign {} in the layer's properties</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/wording.py"/>
+    <location filename="../../plugin/ui/wording.py"/>
     <source>one</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/wording.py"/>
+    <location filename="../../plugin/ui/wording.py"/>
     <source>one of the analyses</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/wording.py"/>
+    <location filename="../../plugin/ui/wording.py"/>
     <source>the right one</source>
     <translation type="unfinished"></translation>
   </message>

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import pytest
 from gis.samples import hills, write_las, write_tif
 
-from wavelet_gis.cli import main
+from wavelet_gis.cli.main import main
 
 
 @dataclass(frozen=True)

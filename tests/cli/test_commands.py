@@ -7,8 +7,8 @@ import rasterio
 from gis.samples import assert_same_cloud, assert_same_raster, hills, write_las, write_tif
 
 from wavelet_core import analyse
-from wavelet_gis.pyramid_file import read_pyramid
-from wavelet_gis.terrain import open_terrain
+from wavelet_gis.io.pyramid_file import read_pyramid
+from wavelet_gis.workflows.open import open_terrain
 
 
 def test_analyse_and_reconstruct_a_dem(done, tif, tmp_path):

@@ -14,7 +14,7 @@ import rasterio
 import shapely
 from gis.samples import hills, write_las, write_tif
 
-from wavelet_gis.cli import main
+from wavelet_gis.cli.main import main
 
 pytest.importorskip("sklearn")
 pytest.importorskip("matplotlib")
@@ -77,8 +77,8 @@ def test_details_give_a_band_for_every_level(run):
 
 
 def test_components_sum_with_the_base_to_the_dem(run, folder):
-    from wavelet_core.spectrum import band_components
-    from wavelet_gis.pyramid_file import read_pyramid
+    from wavelet_core.features.spectrum import band_components
+    from wavelet_gis.io.pyramid_file import read_pyramid
 
     _, path, _ = run("details", "d.gpkg", "c.tif", "--what", "component")
     record = read_pyramid(folder / "d.gpkg")

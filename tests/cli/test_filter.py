@@ -10,8 +10,8 @@ import pytest
 import rasterio
 from gis.samples import hills, write_tif
 
-from wavelet_core.spectrum import level_spacings
-from wavelet_gis.pyramid_file import read_pyramid
+from wavelet_core.lifting.spacings import level_spacings
+from wavelet_gis.io.pyramid_file import read_pyramid
 
 
 def band_of(path):

@@ -30,7 +30,7 @@ def test_help_and_usage(process):
 
 def test_help_imports_nothing_heavy(process):
     code = (
-        "import sys; from wavelet_gis.cli import main; main(['--help']);"
+        "import sys; from wavelet_gis.cli.main import main; main(['--help']);"
         "heavy = {'numpy', 'scipy', 'numba', 'rasterio', 'pyogrio', 'laspy', 'tqdm'};"
         "print('HEAVY', sorted(heavy & set(sys.modules)))"
     )
@@ -114,12 +114,12 @@ def test_a_reader_that_goes_away(pyramid):
 
 
 def test_an_unforeseen_error_is_one_line_and_a_traceback_on_request(pyramid, monkeypatch, capsys):
-    from wavelet_gis.cli import main
+    from wavelet_gis.cli.main import main
 
     def fail(path):
         raise ZeroDivisionError("a bug")
 
-    monkeypatch.setattr("wavelet_gis.pyramid_file.read_summary", fail)
+    monkeypatch.setattr("wavelet_gis.io.pyramid_file.read_summary", fail)
     assert main(["info", str(pyramid)]) == 1
     err = capsys.readouterr().err
     assert err.count("\n") == 1
@@ -130,11 +130,11 @@ def test_an_unforeseen_error_is_one_line_and_a_traceback_on_request(pyramid, mon
 
 
 def test_memory_that_runs_out_is_one_line(pyramid, monkeypatch, capsys):
-    from wavelet_gis.cli import main
+    from wavelet_gis.cli.main import main
 
     def fail(path):
         raise MemoryError
 
-    monkeypatch.setattr("wavelet_gis.pyramid_file.read_summary", fail)
+    monkeypatch.setattr("wavelet_gis.io.pyramid_file.read_summary", fail)
     assert main(["info", str(pyramid)]) == 1
     assert "not enough memory" in capsys.readouterr().err

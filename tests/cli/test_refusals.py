@@ -226,13 +226,13 @@ def test_reconstructions_in_the_wrong_format(refused, pyramid, cloud_pyramid, tm
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full to stand for a full disk")
 def test_a_full_disk_while_writing(command, pyramid, tmp_path, monkeypatch):
-    import wavelet_gis.commands.extract as module
+    import wavelet_gis.cli.commands.extract as module
 
     def full(path, mesh, wkt):
         with open("/dev/full", "w") as stream:
             stream.write("x" * 100_000)
 
-    monkeypatch.setattr("wavelet_gis.meshfiles.write_mesh", full)
+    monkeypatch.setattr("wavelet_gis.io.meshes.write_mesh", full)
     outcome = command("extract", pyramid, tmp_path / "a.ply")
     assert module.HELP
     assert outcome.code == 1

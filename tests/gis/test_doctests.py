@@ -11,7 +11,7 @@ import wavelet_gis
 MODULES = sorted(
     module.name
     for module in pkgutil.walk_packages(wavelet_gis.__path__, "wavelet_gis.")
-    if not module.name.startswith("wavelet_gis.commands")
+    if not module.name.startswith("wavelet_gis.cli.commands")
 )
 
 

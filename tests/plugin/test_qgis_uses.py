@@ -286,12 +286,13 @@ def test_two_in_batch(provider, pyramid, tmp_path):
 
 
 def test_the_choices_are_served_by_the_core(qgis):
-    from terrain_wavelets.plugin import design, mesh_output
+    from terrain_wavelets.plugin.parameters import analysis_options as design
+    from terrain_wavelets.plugin.parameters import mesh_output
 
-    from wavelet_core.options import PARTITIONS, SIGNALS
-    from wavelet_core.prediction import PREDICTIONS
-    from wavelet_core.update import UPDATES
-    from wavelet_gis.meshfiles import MESH_SUFFIXES
+    from wavelet_core.lifting.options import PARTITIONS, SIGNALS
+    from wavelet_core.lifting.prediction import PREDICTIONS
+    from wavelet_core.lifting.update import UPDATES
+    from wavelet_gis.io.meshes import MESH_SUFFIXES
 
     assert set(design.PARTITIONS) <= set(PARTITIONS)
     assert set(design.PREDICTIONS) <= set(PREDICTIONS.values())

@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.collapse`: which half-edge collapses are legal (Fig. 3)."""
+"""Kernels of :mod:`wavelet_core.mesh.collapse`: which half-edge collapses are legal (Fig. 3)."""
 
 from ._jit import njit
 from .connectivity import BOUNDARY, INTERIOR

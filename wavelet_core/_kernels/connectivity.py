@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.connectivity`."""
+"""Kernels of :mod:`wavelet_core.mesh.connectivity`."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.geometry`: curvature and bending energy."""
+"""Kernels of :mod:`wavelet_core.mesh.curvature`: curvature and bending energy."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.metrics`: points sorted into cells, faces laid over them."""
+"""Kernels of :mod:`wavelet_core.mesh.location`: points into cells, faces laid over them."""
 
 import math
 

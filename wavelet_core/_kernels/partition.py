@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.partition`: the greedy labelling of Algorithm 2."""
+"""Kernels of :mod:`wavelet_core.partition.orderings`: the greedy labelling of Algorithm 2."""
 
 import numpy as np
 

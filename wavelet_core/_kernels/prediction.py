@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.prediction`: weights of the one-ring of each odd vertex.
+"""Kernels of :mod:`wavelet_core.lifting.prediction`: weights of the one-ring of each odd vertex.
 
 They share their first arguments: odd (n_odd,) int32; row_indptr (n_odd + 1,) int64; indptr, ring
 of the connectivity; points (n, d) float64; weights (nnz,) float64, filled row by row in the order

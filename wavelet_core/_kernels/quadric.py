@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.quadric`: packed symmetric matrices in R^(n+1), homogeneous.
+"""Kernels of :mod:`wavelet_core.mesh.quadric`: packed symmetric matrices in R^(n+1), homogeneous.
 
 A quadric of dimension d is stored as the upper triangle of A (d (d + 1) / 2 values, row by
 row), then b (d values), then c: error(p) = p^T A p + 2 b^T p + c.

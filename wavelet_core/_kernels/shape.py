@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.shape`: a quadratic fitted to the neighbours of each vertex."""
+"""Kernels of :mod:`wavelet_core.features.shape`: quadratics fitted to neighbourhoods."""
 
 import math
 

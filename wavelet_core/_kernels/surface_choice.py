@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.surface`: which candidates go, and the collapses themselves."""
+"""Kernels of :mod:`wavelet_core.partition.error_guided`: which candidates go, and how."""
 
 import numpy as np
 

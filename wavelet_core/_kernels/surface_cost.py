@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.surface`: what the best collapse of each vertex would cost."""
+"""Kernels of :mod:`wavelet_core.partition.error_guided`: the cheapest collapse of a vertex."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.surface`: which face each input point lies in, and how far off."""
+"""Kernels of :mod:`wavelet_core.partition.error_guided`: the face of each point, how far off."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.update`: the sequential one-ring-mean update."""
+"""Kernels of :mod:`wavelet_core.lifting.update`: the sequential one-ring-mean update."""
 
 from ._jit import njit
 

@@ -1,0 +1,1 @@
+"""What a dialog asks, and the way back into options and outputs."""

@@ -1,0 +1,55 @@
+"""Outputs looked at before the long work, so that a refusal comes at once and not after an hour."""
+
+from __future__ import annotations
+
+import os
+import re
+
+from qgis.core import QgsProcessing, QgsProcessingOutputLayerDefinition
+
+
+def check_outputs(algorithm, parameters, context) -> None:
+    """Refuse an output that cannot be written, or that is the input itself.
+
+    Call it in the thread that the layers live in.
+
+    Raises
+    ------
+    OutputFileError
+    """
+    from wavelet_gis.io.atomic import check_output
+
+    inputs = _input_files(algorithm, parameters, context)
+    for definition in algorithm.destinationParameterDefinitions():
+        path = _chosen_file(definition, parameters.get(definition.name()))
+        if path is not None:
+            suffixes = ()
+            if definition.type() == "fileDestination":
+                suffixes = tuple(re.findall(r"\*(\.\w+)", definition.fileFilter()))
+            check_output(path, overwrite=True, suffixes=suffixes, inputs=inputs)
+
+
+def _chosen_file(definition, value) -> str | None:
+    """Return the path that a user chose; None for what is temporary or goes into a database."""
+    if isinstance(value, QgsProcessingOutputLayerDefinition):
+        value = value.sink.staticValue()
+    if not isinstance(value, str) or value in ("", QgsProcessing.TEMPORARY_OUTPUT):
+        return None
+    # A sink may also be a table in a database, or memory.
+    return value if definition.type() != "sink" or os.path.isabs(value) else None
+
+
+def _input_files(algorithm, parameters, context) -> tuple[str, ...]:
+    """Return the files that are read; those that are in use by a layer too."""
+    files = []
+    for definition in algorithm.parameterDefinitions():
+        name, kind = definition.name(), definition.type()
+        if kind == "file":
+            files.append(algorithm.parameterAsString(parameters, name, context))
+        elif kind == "raster":
+            layer = algorithm.parameterAsRasterLayer(parameters, name, context)
+            files.append(layer.source() if layer else "")
+        elif kind == "source":
+            layer = algorithm.parameterAsVectorLayer(parameters, name, context)
+            files.append(layer.source() if layer else "")
+    return tuple(file.split("|")[0] for file in files if file)

@@ -1,0 +1,151 @@
+"""``Dem`` and ``Bands`` arrays to raster files by GDAL; a file appears whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from functools import partial
+
+import numpy as np
+from osgeo import gdal
+from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingException, QgsRasterFileWriter
+
+from ..ui.translation import tr
+from .gdal_errors import without_exceptions
+from .raster_reader import GDAL_TYPES, strips
+
+
+def write_dem(path: str, dem, crs, feedback) -> None:
+    """Write a ``Dem`` as a raster; the suffix chooses the format.
+
+    Parameters
+    ----------
+    path : str
+        Where; the file appears whole or not at all.
+    dem : Dem
+    crs : QgsCoordinateReferenceSystem
+    feedback : QgsProcessingFeedback
+        Asked for cancel between strips.
+
+    Raises
+    ------
+    QgsProcessingException
+        A format that GDAL cannot write, or a full disk.
+    """
+    from wavelet_gis.io.atomic import new_file
+
+    driver_name = QgsRasterFileWriter.driverForExtension(os.path.splitext(path)[1].lstrip("."))
+    refusal = partial(_unwritten, path)
+    with new_file(path, overwrite=True) as scratch, without_exceptions(gdal, refusal):
+        options = _creation_options(dem) if driver_name == "GTiff" else []
+        first = gdal.GetDriverByName("GTiff" if driver_name == "GTiff" else "MEM")
+        last = gdal.GetDriverByName(driver_name) if driver_name else None
+        gdal_type = GDAL_TYPES.get(dem.values.dtype.newbyteorder("<").str)
+        if last is None or gdal_type is None:
+            raise QgsProcessingException(
+                tr(
+                    "{}: no raster of {} can be written under this name; use one ending in .tif."
+                ).format(path, dem.values.dtype)
+            )
+        n_rows, n_columns = dem.geometry.shape
+        name = str(scratch) if first is last or driver_name == "GTiff" else ""
+        dataset = first.Create(name, n_columns, n_rows, 1, gdal_type, options)
+        is_written = dataset is not None and _fill(dataset, dem, crs, feedback)
+        if is_written and driver_name != "GTiff":
+            copy = last.CreateCopy(str(scratch), dataset)
+            is_written = copy is not None
+            copy = None
+        dataset = None  # closes the file
+        if not is_written:
+            raise refusal(gdal.GetLastErrorMsg())
+
+
+def write_bands(path: str, bands, crs, feedback) -> None:
+    """Write ``wavelet_gis.products.vertex_raster.Bands`` as a GeoTIFF, each band with its name.
+
+    Raises
+    ------
+    QgsProcessingException
+        When GDAL cannot write.
+    Cancelled
+    """
+    from wavelet_gis.io.atomic import new_file
+
+    n_bands, n_rows, n_columns = bands.values.shape
+    dtype = bands.values.dtype.newbyteorder("<")
+    predictor = 3 if dtype.kind == "f" else 2
+    options = ["COMPRESS=DEFLATE", f"PREDICTOR={predictor}", "TILED=YES", "BIGTIFF=IF_SAFER"]
+    refusal = partial(_unwritten, path)
+    with new_file(path, overwrite=True) as scratch, without_exceptions(gdal, refusal):
+        driver = gdal.GetDriverByName("GTiff")
+        dataset = driver.Create(
+            str(scratch), n_columns, n_rows, n_bands, GDAL_TYPES[dtype.str], options
+        )
+        if dataset is None:
+            raise refusal(gdal.GetLastErrorMsg())
+        _georeference(dataset, bands.geometry, crs)
+        is_written = True
+        for k in range(n_bands):
+            band = dataset.GetRasterBand(k + 1)
+            band.SetDescription(bands.names[k])
+            band.SetNoDataValue(bands.nodata)
+            is_written &= _write_strips(band, bands.values[k], feedback)
+        band = dataset = None  # closes the file
+        if not is_written:
+            raise refusal(gdal.GetLastErrorMsg())
+
+
+def _fill(dataset, dem, crs, feedback) -> bool:
+    _georeference(dataset, dem.geometry, crs)
+    for key, value in dict(dem.profile.get("tags", {})).items():
+        dataset.SetMetadataItem(str(key), str(value))
+    band = dataset.GetRasterBand(1)
+    if dem.nodata is not None:
+        band.SetNoDataValue(dem.nodata)
+    if dem.scale != 1.0 or dem.offset != 0.0:
+        band.SetScale(dem.scale)
+        band.SetOffset(dem.offset)
+    if dem.profile.get("unit"):
+        band.SetUnitType(str(dem.profile["unit"]))
+    is_written = _write_strips(band, dem.values, feedback)
+    dataset.FlushCache()
+    return is_written
+
+
+def _georeference(dataset, geometry, crs) -> None:
+    a, b, c, d, e, f = geometry.transform
+    dataset.SetGeoTransform((c, a, b, f, d, e))
+    if crs.isValid():
+        dataset.SetProjection(crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL))
+
+
+def _write_strips(band, values, feedback) -> bool:
+    n_rows, n_columns = values.shape
+    for start, stop in strips(n_rows, n_columns, feedback):
+        strip = np.ascontiguousarray(values[start:stop])
+        if band.WriteRaster(0, start, n_columns, stop - start, strip.tobytes()) != 0:
+            return False
+    return True
+
+
+def _unwritten(path: str, reason: str):
+    return QgsProcessingException(
+        tr("{}: GDAL could not write this raster ({}); check the disk and the name.").format(
+            path, reason
+        )
+    )
+
+
+def _creation_options(dem) -> list[str]:
+    options = dict(dem.profile.get("options", {}))
+    # Lossless, and a third of the size: what a new raster gets.
+    options.setdefault("compress", "deflate")
+    if options["compress"] in ("lzw", "deflate", "zstd"):
+        options.setdefault("predictor", 3 if dem.values.dtype.kind == "f" else 2)
+    options.setdefault("bigtiff", "IF_SAFER")
+    names = ("compress", "predictor", "tiled", "blockxsize", "blockysize", "bigtiff")
+    values = {name: options[name] for name in names if options.get(name) is not None}
+    if not values.get("tiled"):
+        values.pop("tiled", None)
+        values.pop("blockxsize", None)
+        values.pop("blockysize", None)
+    return [f"{name.upper()}={'YES' if value is True else value}" for name, value in values.items()]

@@ -1,0 +1,230 @@
+"""Vector features to arrays and back, through QGIS sources and sinks."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from qgis.core import (
+    QgsFeature,
+    QgsFeatureRequest,
+    QgsFeatureSink,
+    QgsField,
+    QgsFields,
+    QgsGeometry,
+    QgsProcessingException,
+    QgsWkbTypes,
+)
+
+from ..ui.translation import tr
+from .crs_and_progress import require_running
+from .field_types import DOUBLE, INTEGER
+
+#: Features read or written between two looks at the cancel button.
+CHUNK = 5_000
+
+
+class Points(NamedTuple):
+    """Points of a layer: xyz (n, 3), attributes (n, k), is_marked (n,) bool."""
+
+    xyz: np.ndarray
+    attributes: np.ndarray
+    is_marked: np.ndarray
+
+
+def read_points(source, z_field, attribute_fields, mark_field, feedback) -> Points:
+    """Return the points of a source.
+
+    Parameters
+    ----------
+    source : QgsProcessingFeatureSource
+        Its selection or subset is respected.
+    z_field : str or None
+        Field with the elevation; None takes the geometry's Z.
+    attribute_fields : sequence of str
+        Numeric fields that become attributes.
+    mark_field : str or None
+        Field that marks a point (any value but 0, false and NULL).
+
+    Raises
+    ------
+    QgsProcessingException
+        A point without elevation, an attribute that is NULL or no number.
+    """
+    fields = source.fields()
+    z_index = fields.lookupField(z_field) if z_field else -1
+    attribute_indices = [fields.lookupField(name) for name in attribute_fields]
+    mark_index = fields.lookupField(mark_field) if mark_field else -1
+    if not z_field and not QgsWkbTypes.hasZ(source.wkbType()):
+        raise QgsProcessingException(
+            tr("{}: the points have no Z; choose the field with the elevation.").format(
+                source.sourceName()
+            )
+        )
+    xyz, attributes, marks = [], [], []
+    for feature in _features(source, feedback):
+        geometry = feature.geometry()
+        values = feature.attributes()
+        row = [_number(feature, values[k], fields[k].name()) for k in attribute_indices]
+        is_marked = mark_index >= 0 and _is_true(values[mark_index])
+        for point in geometry.vertices():
+            z = _number(feature, values[z_index], z_field) if z_field else point.z()
+            xyz.append((point.x(), point.y(), z))
+            attributes.append(row)
+            marks.append(is_marked)
+    n = len(xyz)
+    return Points(
+        np.array(xyz, dtype=np.float64).reshape(n, 3),
+        np.array(attributes, dtype=np.float64).reshape(n, len(attribute_indices)),
+        np.array(marks, dtype=bool),
+    )
+
+
+def read_triangles(source, feedback) -> np.ndarray:
+    """Return the corners of a layer of triangles, ``(n_faces, 3, 3)``: face, corner, x y z.
+
+    Raises
+    ------
+    QgsProcessingException
+        A polygon that is no triangle, or without Z.
+    """
+    if not QgsWkbTypes.hasZ(source.wkbType()):
+        raise QgsProcessingException(
+            tr("{}: the triangles have no Z, so they hold no elevations.").format(
+                source.sourceName()
+            )
+        )
+    corners = []
+    for feature in _features(source, feedback):
+        for part in feature.geometry().constParts():
+            ring = part.exteriorRing()
+            if ring is None or ring.numPoints() != 4 or part.numInteriorRings():
+                raise QgsProcessingException(
+                    tr(
+                        "{}: feature {} is no triangle; triangulate the layer first, or give a "
+                        "point layer."
+                    ).format(source.sourceName(), feature.id())
+                )
+            corners.append([(p.x(), p.y(), p.z()) for p in ring.points()[:3]])
+    return np.array(corners, dtype=np.float64).reshape(len(corners), 3, 3)
+
+
+def features_in(source, crs, transform_context, feedback):
+    """Yield the features of a source that have a geometry, in a CRS.
+
+    Parameters
+    ----------
+    source : QgsProcessingFeatureSource
+    crs : QgsCoordinateReferenceSystem
+        That of the terrain. Where it or that of the source is missing, coordinates are taken as
+        they are, with a warning.
+    transform_context : QgsCoordinateTransformContext
+    feedback : QgsProcessingFeedback
+    """
+    own, failed = source.sourceCrs(), []
+    request = QgsFeatureRequest()
+    if own.isValid() != crs.isValid():
+        feedback.pushWarning(
+            tr(
+                "{}: of this layer and the terrain only one has a CRS, so their coordinates are "
+                "taken to be alike (assign the CRS that is missing)"
+            ).format(source.sourceName())
+        )
+    elif own != crs:
+        request.setDestinationCrs(crs, transform_context)
+        request.setTransformErrorCallback(lambda feature: failed.append(feature.id()))
+    for feature in source.getFeatures(request):
+        require_running(feedback)
+        if not feature.hasGeometry():
+            continue
+        if feature.geometry().boundingBox().isFinite():
+            yield feature
+        else:
+            failed.append(feature.id())
+    if failed:
+        feedback.pushWarning(
+            tr(
+                "{}: what cannot be brought into the CRS of the terrain is left out (features: "
+                "{}); check the CRS of the layer"
+            ).format(source.sourceName(), len(failed))
+        )
+
+
+def fields_of(layer) -> QgsFields:
+    """Return the fields of a ``wavelet_gis.products.layers.Layer``."""
+    fields = QgsFields()
+    for name, column in layer.fields.items():
+        fields.append(QgsField(name, DOUBLE if column.dtype.kind == "f" else INTEGER))
+    return fields
+
+
+def wkb_type_of(layer):
+    """Return the geometry type of a ``wavelet_gis.products.layers.Layer``."""
+    types = QgsWkbTypes.Type
+    return {"Point Z": types.PointZ, "Polygon Z": types.PolygonZ}[layer.geometry_type]
+
+
+def add_layer(sink, layer, feedback, rows=None) -> int:
+    """Add the features of a ``wavelet_gis.products.layers.Layer`` to a sink made with its fields.
+
+    Parameters
+    ----------
+    sink : QgsFeatureSink
+    layer : Layer
+    feedback : QgsProcessingFeedback
+    rows : array of int, optional
+        Which of them; all by default.
+
+    Returns
+    -------
+    int
+        Number of features added.
+    """
+    fields = fields_of(layer)
+    selected = slice(None) if rows is None else rows
+    geometries = layer.geometry[selected]
+    columns = [column[selected].tolist() for column in layer.fields.values()]
+    for start in range(0, len(geometries), CHUNK):
+        require_running(feedback)
+        features = []
+        for k in range(start, min(start + CHUNK, len(geometries))):
+            feature = QgsFeature(fields)
+            geometry = QgsGeometry()
+            geometry.fromWkb(geometries[k])
+            feature.setGeometry(geometry)
+            feature.setAttributes([column[k] for column in columns])
+            features.append(feature)
+        if not sink.addFeatures(features, QgsFeatureSink.Flag.FastInsert):
+            raise QgsProcessingException(
+                tr("The features could not be written ({}); check the disk and the name.").format(
+                    sink.lastError()
+                )
+            )
+    return len(geometries)
+
+
+def _features(source, feedback):
+    for count, feature in enumerate(source.getFeatures()):
+        if count % CHUNK == 0:
+            require_running(feedback)
+        if feature.hasGeometry():
+            yield feature
+
+
+def _number(feature, value, name) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise QgsProcessingException(
+            tr("Feature {}: field {} holds {}, which is no number; fill or filter it.").format(
+                feature.id(), name, "NULL" if _is_null(value) else repr(value)
+            )
+        ) from error
+
+
+def _is_null(value) -> bool:
+    return value is None or (hasattr(value, "isNull") and value.isNull())
+
+
+def _is_true(value) -> bool:
+    return not _is_null(value) and bool(value) and str(value).strip().lower() not in ("0", "false")

@@ -1,0 +1,1 @@
+"""Styles, words, translations, warnings, missing packages."""

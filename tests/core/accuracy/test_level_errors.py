@@ -1,0 +1,90 @@
+"""Errors between surfaces, where the answer is known."""
+
+import numpy as np
+import pytest
+from helpers import columns_of
+from helpers_meshes import grid_with_holes, random_delaunay
+
+from wavelet_core import TriangleMesh, analyse, synthetic
+from wavelet_core.accuracy.level_errors import level_errors
+from wavelet_core.mesh.location import surface_errors
+
+
+def test_points_on_the_surface_have_no_error():
+    mesh = random_delaunay(100, seed=1, offset=1e6)
+    np.testing.assert_allclose(surface_errors(mesh, mesh.vertices), 0, atol=1e-8)
+    centres = mesh.vertices[mesh.faces].mean(axis=1)
+    np.testing.assert_allclose(surface_errors(mesh, centres), 0, atol=1e-8)
+
+
+def test_the_error_is_point_minus_surface_along_z():
+    mesh = synthetic.plane(slope=(0.5, 0.25))
+    points = np.array([[1.3, 2.4, 0.0], [0.0, 0.0, 5.0], [14.0, 11.0, 0.0]])
+    expected = points[:, 2] - (5 + 0.5 * points[:, 0] + 0.25 * points[:, 1])
+    np.testing.assert_allclose(surface_errors(mesh, points), expected, atol=1e-12)
+
+
+def test_points_outside_and_over_holes_have_none():
+    mesh = TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    points = np.array([[0.2, 0.2, 7.0], [0.8, 0.8, 7.0], [-1e-3, 0.5, 7.0], [50.0, 0.1, 7.0]])
+    errors = surface_errors(mesh, points)
+    np.testing.assert_array_equal(np.isnan(errors), [False, True, True, True])
+    assert errors[0] == 7.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_every_point_agrees_with_a_search_through_all_faces(seed):
+    rng = np.random.default_rng(seed)
+    mesh = random_delaunay(40, seed=seed)
+    points = np.column_stack([rng.random((300, 2)) * 1.2 - 0.1, rng.random(300)])
+    errors = surface_errors(mesh, points)
+    for point, error in zip(points, errors, strict=True):
+        expected = np.nan
+        for a, b, c in mesh.vertices[mesh.faces]:
+            weights = np.linalg.solve(
+                np.vstack([np.column_stack([a, b, c])[:2], np.ones(3)]), [*point[:2], 1.0]
+            )
+            if weights.min() >= 0:
+                expected = point[2] - weights @ [a[2], b[2], c[2]]
+        assert error == pytest.approx(expected, abs=1e-9, nan_ok=True)
+
+
+def test_no_faces_and_no_points():
+    lonely = TriangleMesh([[0, 0, 0], [1, 1, 1]], np.empty((0, 3), dtype=int))
+    assert np.isnan(surface_errors(lonely, lonely.vertices)).all()
+    assert len(surface_errors(synthetic.plane(), np.empty((0, 3)))) == 0
+
+
+@pytest.mark.parametrize("signal", ["z", "xyz"])
+def test_level_errors(signal):
+    mesh = random_delaunay(300, n_attributes=2, seed=2)
+    pyramid = analyse(mesh, levels=5, partition="quadric", prediction="GLMN", signal=signal)
+    rows = level_errors(pyramid)
+    assert [row.level for row in rows] == [5, 4, 3, 2, 1, 0]
+    assert rows[0].rmse_coefficients == 0
+    assert rows[0].rmse_surface == pytest.approx(0, abs=1e-12)
+    names = ("x", "y", "z", *mesh.attribute_names)
+    wanted = columns_of(mesh, names)
+    for row in rows:
+        level_mesh = pyramid.mesh(row.level)
+        assert (row.n_vertices, row.n_faces) == (level_mesh.n_vertices, level_mesh.n_faces)
+        moved = columns_of(level_mesh, names) - wanted[pyramid.vertex_ids(row.level)]
+        moved /= np.ptp(wanted, axis=0)
+        assert row.rmse_coefficients == pytest.approx(np.sqrt((moved**2).sum() / len(moved)))
+        errors = surface_errors(level_mesh, mesh.vertices)
+        assert row.n_uncovered == np.isnan(errors).sum()
+        assert row.max_error_surface == pytest.approx(np.nanmax(np.abs(errors)), abs=1e-12)
+        assert row.rmse_surface == pytest.approx(np.sqrt(np.nanmean(errors**2)), abs=1e-12)
+
+
+def test_with_signal_z_every_input_point_stays_covered():
+    mesh = grid_with_holes(20, 20, seed=1, hole_share=0.1)
+    isolated = mesh.n_vertices - len(np.unique(mesh.faces))
+    for row in level_errors(analyse(mesh, levels=12, partition="quadric", signal="z")):
+        assert row.n_uncovered == isolated
+
+
+def test_plain_subsampling_has_no_error_of_coefficients():
+    pyramid = analyse(random_delaunay(200, seed=2), levels=4, update="none")
+    assert all(row.rmse_coefficients < 1e-12 for row in level_errors(pyramid))
+    assert level_errors(pyramid)[-1].rmse_surface > 0

@@ -1,0 +1,158 @@
+"""The average of many pyramids against noise of known size."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from wavelet_core import Cancelled, OptionError, TriangleMesh, denoise
+from wavelet_core.filtering import _weighted_sum
+
+
+def terrain(n=90):
+    """Return a grid with hills, a terrace and a straight bank."""
+    x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n))
+    hills = 4 * np.sin(5 * x) * np.cos(4 * y) + np.exp(-60 * ((x - 0.3) ** 2 + (y - 0.6) ** 2))
+    return hills + 2.0 * (x + 0.3 * y > 0.8)
+
+
+def mesh_of(elevation, **options):
+    x = np.arange(float(elevation.shape[1]))
+    return TriangleMesh.from_grid(elevation, x=x, y=np.arange(float(len(elevation))), **options)
+
+
+def rmse(mesh, truth):
+    return float(np.sqrt(np.mean((mesh.vertices[:, 2] - truth.ravel()) ** 2)))
+
+
+@pytest.mark.large
+def test_denoising_beats_gaussian_and_median_at_their_best():
+    truth = terrain()
+    noisy = truth + np.random.default_rng(0).normal(0, 0.4, truth.shape)
+    ours = rmse(denoise(mesh_of(noisy), 0.4, n_pyramids=12), truth)
+    gaussian = min(
+        np.sqrt(np.mean((ndimage.gaussian_filter(noisy, s, mode="nearest") - truth) ** 2))
+        for s in np.linspace(0.5, 4, 15)
+    )
+    median = min(
+        np.sqrt(np.mean((ndimage.median_filter(noisy, s, mode="nearest") - truth) ** 2))
+        for s in (3, 5, 7, 9)
+    )
+    assert ours < 0.9 * gaussian
+    assert ours < median
+
+
+@pytest.mark.large
+def test_noise_is_estimated_when_it_is_not_given():
+    truth = terrain(50)
+    noisy = mesh_of(truth + np.random.default_rng(0).normal(0, 0.4, truth.shape))
+    given, estimated = (rmse(denoise(noisy, s, n_pyramids=3), truth) for s in (0.4, None))
+    assert estimated == pytest.approx(given, rel=0.1)
+    assert given < 0.2
+
+
+def test_no_noise_gives_back_the_input():
+    mesh = mesh_of(terrain(20))
+    np.testing.assert_array_equal(denoise(mesh, 0.0, n_pyramids=2).vertices, mesh.vertices)
+    still = denoise(mesh, 1e-9, n_pyramids=2)
+    np.testing.assert_allclose(still.vertices, mesh.vertices, atol=1e-6)
+
+
+def test_the_same_seed_gives_the_same_bytes_and_inputs_stay():
+    mesh = mesh_of(terrain(25))
+    before = mesh.vertices.copy()
+    one, same = (denoise(mesh, 0.3, n_pyramids=2, seed=7) for _ in range(2))
+    assert one.vertices.tobytes() == same.vertices.tobytes()
+    np.testing.assert_array_equal(mesh.vertices, before)
+    assert not np.array_equal(denoise(mesh, 0.3, n_pyramids=2).vertices, one.vertices)
+
+
+def test_only_the_chosen_channels_change_and_x_and_y_never():
+    truth = terrain(30)
+    rng = np.random.default_rng(1)
+    noisy = truth + rng.normal(0, 0.4, truth.shape)
+    mesh = mesh_of(noisy, attributes=noisy[..., None] * 10, attribute_names=["tenfold"])
+    result = denoise(mesh, 4.0, n_pyramids=2, channels=["tenfold"])
+    np.testing.assert_array_equal(result.vertices, mesh.vertices)
+    assert np.std(result.attributes[:, 0] - 10 * truth.ravel()) < 2.6
+    both = denoise(mesh, n_pyramids=2, channels=["z", "tenfold"])
+    np.testing.assert_allclose(both.attributes[:, 0], 10 * both.vertices[:, 2], rtol=1e-6)
+
+
+def test_scale_and_offset_only_scale_and_shift_the_result():
+    truth = terrain(25) + np.random.default_rng(2).normal(0, 0.3, (25, 25))
+    plain = denoise(mesh_of(truth), 0.3, n_pyramids=2).vertices[:, 2]
+    far = denoise(mesh_of(1000 * truth + 5e6), 300.0, n_pyramids=2).vertices[:, 2]
+    np.testing.assert_allclose((far - 5e6) / 1000, plain, atol=1e-6)
+
+
+def test_locked_vertices_keep_their_values():
+    truth = terrain(25) + np.random.default_rng(2).normal(0, 0.3, (25, 25))
+    locked = np.zeros(625, dtype=bool)
+    locked[::5] = True
+    mesh = mesh_of(truth)
+    result = denoise(mesh, 0.3, n_pyramids=2, locked=locked)
+    np.testing.assert_array_equal(result.vertices[locked], mesh.vertices[locked])
+    assert np.abs(result.vertices - mesh.vertices)[~locked].max() > 0.1
+
+
+@pytest.mark.large
+def test_meshes_too_large_to_keep_give_the_same_result(monkeypatch):
+    truth = terrain(40) + np.random.default_rng(2).normal(0, 0.3, (40, 40))
+    whole = denoise(mesh_of(truth), 0.3, n_pyramids=3).vertices[:, 2]
+    monkeypatch.setattr(_weighted_sum, "MAX_FITTED", 1500)
+    parts = denoise(mesh_of(truth), 0.3, n_pyramids=3).vertices[:, 2]
+    assert not np.array_equal(parts, whole)
+    assert np.std(parts - whole) < 0.05
+
+
+@pytest.mark.parametrize("n", [2, 3, 5])
+def test_tiny_meshes_pass(n):
+    result = denoise(mesh_of(terrain(n)), 0.1, n_pyramids=2)
+    assert np.isfinite(result.vertices).all()
+
+
+def test_cancelling_stops_it():
+    with pytest.raises(Cancelled):
+        denoise(mesh_of(terrain(20)), 0.1, progress=lambda fraction: fraction < 0.5)
+    seen = []
+    denoise(mesh_of(terrain(20)), 0.1, n_pyramids=3, progress=lambda f: seen.append(f))
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"sigma": -1.0}, "sigma is -1"),
+        ({"n_pyramids": 0}, "n_pyramids is 0"),
+        ({"levels": 0}, "levels is 0"),
+        ({"channels": ["w"]}, "no channel 'w'"),
+    ],
+)
+def test_what_does_not_fit_is_refused(options, words):
+    with pytest.raises(OptionError, match=words):
+        denoise(mesh_of(terrain(10)), **options)
+
+
+def test_a_sigma_far_too_large_smooths_and_never_turns_details_over():
+    truth = terrain(40)
+    noisy = mesh_of(truth + np.random.default_rng(0).normal(0, 0.1, truth.shape))
+    smooth = denoise(noisy, 2.0, n_pyramids=2).vertices[:, 2]
+    assert smooth.min() > truth.min() - 0.5
+    assert smooth.max() < truth.max() + 0.5
+    assert np.std(smooth - truth.ravel()) < 0.6 * np.std(truth)
+
+
+@pytest.mark.large
+def test_a_step_of_lidar_points_moves_by_no_more_than_noise():
+    # Without bounds on its weights the solver once moved points beside such a wall by 59 m.
+    rng = np.random.default_rng(3)
+    points = rng.uniform(0, 100, (6000, 2))
+    truth = 0.05 * points[:, 0] + 8.0 * (points[:, 0] > 50)
+    z = truth + rng.normal(0, 0.05, len(points))
+    mesh = TriangleMesh.from_points(np.column_stack([points, z]))
+    clean = denoise(mesh, 0.05, n_pyramids=8).vertices[:, 2]
+    assert np.abs(clean - z).max() < 6 * 0.05
+    assert np.std(clean - truth) < 0.5 * 0.05
+    beside = np.abs(points[:, 0] - 50) < 2
+    assert np.abs(clean - truth)[beside].max() < 6 * 0.05

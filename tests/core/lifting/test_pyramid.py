@@ -1,0 +1,305 @@
+"""The pyramid's answers fit one another; parts that are none are refused; errors are told."""
+
+import dataclasses
+from itertools import pairwise
+
+import helpers
+import numpy as np
+import pytest
+from helpers_meshes import grid_with_holes, random_delaunay
+
+from wavelet_core import (
+    Cancelled,
+    OptionError,
+    Pyramid,
+    PyramidError,
+    TriangleMesh,
+    WaveletError,
+    analyse,
+    synthetic,
+)
+
+
+@pytest.fixture(scope="module", params=["z", "xyz"])
+def pyramid(request):
+    mesh = random_delaunay(200, n_attributes=2, seed=3)
+    return analyse(mesh, levels=5, partition="quadric", prediction="GLMN", signal=request.param)
+
+
+def parts_of(pyramid):
+    fields = dataclasses.fields(Pyramid)
+    return {field.name: getattr(pyramid, field.name) for field in fields}
+
+
+# --- answers ----------------------------------------------------------------------------------
+
+
+def test_counts_ids_and_orders_fit(pyramid):
+    ids = pyramid.vertex_ids(pyramid.n_levels)
+    np.testing.assert_array_equal(ids, np.arange(200))
+    for level in reversed(range(pyramid.n_levels)):
+        pair, detail = pyramid.filters(level), pyramid.detail(level)
+        np.testing.assert_array_equal(detail.vertex_ids, ids[pair.odd])
+        ids = ids[pair.even]
+        np.testing.assert_array_equal(pyramid.vertex_ids(level), ids)
+        mesh = pyramid.mesh(level)
+        assert mesh.n_vertices == len(ids) == pyramid.n_vertices(level)
+        assert mesh.n_faces == pyramid.n_faces(level)
+        assert detail.vectors.shape == (len(pair.odd), len(pyramid.channels))
+        np.testing.assert_allclose(detail.magnitude, np.linalg.norm(detail.vectors, axis=1))
+        np.testing.assert_array_equal(detail.positions, pyramid.mesh(level + 1).vertices[pair.odd])
+        assert (pyramid.integrals(level) >= 1).all()
+
+
+def test_channels_and_names(pyramid):
+    leading = ("z",) if pyramid.signal == "z" else ("x", "y", "z")
+    assert pyramid.channels == (*leading, "class", "intensity")
+    assert pyramid.attribute_names == ("class", "intensity")
+    assert pyramid.mesh(0).attribute_names == ("class", "intensity")
+
+
+def test_meshes_and_details_in_one_pass_are_those_asked_for_one_by_one(pyramid):
+    for start in (0, 2, pyramid.n_levels):
+        levels = []
+        for level, mesh in pyramid.meshes(start):
+            levels.append(level)
+            helpers.assert_same_mesh(mesh, pyramid.mesh(level), relative=0)
+        assert levels == list(range(start, pyramid.n_levels + 1))
+    for level, detail in pyramid.details():
+        np.testing.assert_array_equal(detail.vectors, pyramid.detail(level).vectors)
+        np.testing.assert_array_equal(detail.positions, pyramid.detail(level).positions)
+
+
+def test_with_signal_z_every_vertex_keeps_its_x_and_y():
+    mesh = grid_with_holes(12, 12, seed=1, offset=1e6)
+    pyramid = analyse(mesh, levels=6, partition="quadric", signal="z")
+    for level in range(pyramid.n_levels + 1):
+        kept = mesh.vertices[pyramid.vertex_ids(level), :2]
+        np.testing.assert_array_equal(pyramid.mesh(level).vertices[:, :2], kept)
+
+
+def test_all_channels_are_lifted_together():
+    """Where the partition looks at x and y alone, no channel changes the lifting of another."""
+    mesh = random_delaunay(100, n_attributes=2, seed=5)
+    options = {"levels": 3, "partition": "random", "prediction": "UG", "update": "MN"}
+    both = analyse(mesh, **options)
+    alone = analyse(TriangleMesh(mesh.vertices, mesh.faces), **options)
+    np.testing.assert_array_equal(both.mesh(0).vertices, alone.mesh(0).vertices)
+    swapped = TriangleMesh(
+        np.column_stack([mesh.vertices[:, :2], mesh.attributes[:, 1]]), mesh.faces
+    )
+    np.testing.assert_allclose(
+        both.mesh(0).attributes[:, 1], analyse(swapped, **options).mesh(0).vertices[:, 2]
+    )
+
+
+def test_no_levels():
+    mesh = random_delaunay(30, seed=1)
+    pyramid = analyse(mesh, levels=0)
+    assert pyramid.n_levels == 0
+    helpers.assert_same_mesh(pyramid.synthesise(), mesh, relative=0)
+
+
+# --- levels that are not there ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("level", [-1, 6, 99])
+@pytest.mark.parametrize(
+    "question", ["mesh", "n_vertices", "n_faces", "vertex_ids", "integrals", "synthesise"]
+)
+def test_a_level_that_is_not_there(pyramid, question, level):
+    with pytest.raises(PyramidError, match=f"no level {level}; the levels are 0 to 5"):
+        getattr(pyramid, question)(level)
+
+
+@pytest.mark.parametrize("level", [-1, 5])
+@pytest.mark.parametrize("question", ["detail", "filters"])
+def test_a_step_that_is_not_there(pyramid, question, level):
+    with pytest.raises(PyramidError, match=f"no details at level {level}; they are at 0 to 4"):
+        getattr(pyramid, question)(level)
+
+
+# --- parts from strangers ---------------------------------------------------------------------
+
+
+def test_sound_parts_make_the_same_pyramid(pyramid):
+    again = Pyramid.from_parts(**parts_of(pyramid))
+    helpers.assert_same_mesh(again.synthesise(), pyramid.synthesise(), relative=0)
+
+
+def with_step(parts, level=1, **changes):
+    steps = list(parts["steps"])
+    steps[level] = dataclasses.replace(steps[level], **changes)
+    return parts | {"steps": tuple(steps)}
+
+
+def altered(array, index, value):
+    array = np.array(array)
+    array[index] = value
+    return array
+
+
+FAULTS = {
+    "a signal of another name": lambda p, s: p | {"signal": "xy"},
+    "an update of another name": lambda p, s: p | {"update": "median"},
+    "channels that do not begin with z": lambda p, s: p | {"channels": ("a", *p["channels"][1:])},
+    "a channel twice": lambda p, s: p | {"channels": (*p["channels"][:-1], p["channels"][-2])},
+    "a channel too many": lambda p, s: p | {"channels": (*p["channels"], "b")},
+    "coarse coefficients with NaN": lambda p, s: (
+        p | {"coarse": altered(p["coarse"], (0, 0), np.nan)}
+    ),
+    "too few coarse coefficients": lambda p, s: p | {"coarse": p["coarse"][:-1]},
+    "coarse coefficients of one dimension": lambda p, s: p | {"coarse": p["coarse"][:, 0]},
+    "a face out of range": lambda p, s: p | {"faces": altered(p["faces"], (0, 0), 200)},
+    "a negative face": lambda p, s: p | {"faces": altered(p["faces"], (0, 0), -1)},
+    "faces of another shape": lambda p, s: p | {"faces": p["faces"][:, :2]},
+    "a face with a vertex twice": lambda p, s: (
+        p | {"faces": altered(p["faces"], (0, 0), p["faces"][0, 1])}
+    ),
+    "a locked mask of another length": lambda p, s: p | {"locked": np.zeros(3, bool)},
+    "an odd vertex twice": lambda p, s: with_step(p, odd=altered(s.odd, 0, s.odd[1])),
+    "an odd vertex out of range": lambda p, s: with_step(p, odd=altered(s.odd, 0, 10_000)),
+    "a negative odd vertex": lambda p, s: with_step(p, odd=altered(s.odd, 0, -1)),
+    "an odd target": lambda p, s: with_step(p, target=altered(s.target, 0, s.odd[1])),
+    "a target out of range": lambda p, s: with_step(p, target=altered(s.target, 0, 10_000)),
+    "a target too few": lambda p, s: with_step(p, target=s.target[:-1]),
+    "a column out of range": lambda p, s: with_step(p, indices=altered(s.indices, 0, 10_000)),
+    "a negative column": lambda p, s: with_step(p, indices=altered(s.indices, 0, -1)),
+    "row pointers that fall": lambda p, s: with_step(p, indptr=altered(s.indptr, 1, 10_000)),
+    "row pointers that start late": lambda p, s: with_step(p, indptr=altered(s.indptr, 0, 1)),
+    "a weight of NaN": lambda p, s: with_step(p, weights=altered(s.weights, 0, np.nan)),
+    "a weight too few": lambda p, s: with_step(p, weights=s.weights[:-1]),
+    "an infinite detail": lambda p, s: with_step(p, details=altered(s.details, (0, 0), np.inf)),
+    "a detail too few": lambda p, s: with_step(p, details=s.details[:-1]),
+    "a channel of details too few": lambda p, s: with_step(p, details=s.details[:, 1:]),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_parts_of_no_pyramid_are_refused(pyramid, fault):
+    parts = FAULTS[fault](parts_of(pyramid), pyramid.steps[1])
+    with pytest.raises(PyramidError):
+        Pyramid.from_parts(**parts)
+
+
+def test_x_and_y_must_be_there_exactly_when_they_are_not_lifted(pyramid):
+    parts = parts_of(pyramid)
+    wrong = None if pyramid.signal == "z" else np.zeros((200, 2))
+    with pytest.raises(PyramidError):
+        Pyramid.from_parts(**(parts | {"horizontal": wrong}))
+
+
+# --- options ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"levels": -1}, "levels is -1; give 0 to"),
+        ({"partition": "best"}, "partition is 'best'; give one of .*quadric"),
+        ({"prediction": "best"}, r"prediction is 'best'; give one of .*geometric \(GL\)"),
+        ({"prediction": "GLXX"}, "prediction is 'GLXX'"),
+        ({"update": "best"}, r"update is 'best'; give one of .*minimum_norm \(MN\)"),
+        ({"signal": "xy"}, "signal is 'xy'; give one of z, xyz"),
+        ({"target_vertices": 2}, "target_vertices is 2"),
+        ({"max_error": -1.0}, "max_error is -1.0"),
+        ({"max_rms": np.nan}, "max_rms is nan"),
+        ({"attribute_weights": (1.0,)}, "give 2 numbers"),
+        ({"attribute_weights": (1.0, -1.0)}, "give 2 numbers"),
+        ({"bending_weight": -0.1}, "bending_weight is -0.1"),
+        ({"bending_weight": np.inf}, "bending_weight is inf"),
+        ({"locked": [True, False]}, "locked has shape .* 30 vertices"),
+        ({"locked": np.zeros(30, dtype=int)}, "locked has .* one bool"),
+    ],
+)
+def test_an_option_that_is_not_served_is_refused(options, message):
+    mesh = random_delaunay(30, n_attributes=2, seed=1)
+    with pytest.raises(OptionError, match=message) as caught:
+        analyse(mesh, **options)
+    assert isinstance(caught.value, WaveletError)
+    assert isinstance(caught.value, ValueError)
+
+
+@pytest.mark.parametrize("prediction", ["GLMN", "glmn", "GL"])
+def test_short_names_and_joined_designs(prediction):
+    pyramid = analyse(random_delaunay(30, seed=1), levels=1, prediction=prediction, update="MN")
+    assert pyramid.parameters["prediction"] == "geometric"
+    assert pyramid.parameters["update"] == pyramid.update == "minimum_norm"
+
+
+def test_parameters_are_plain_and_complete():
+    import json
+
+    pyramid = analyse(random_delaunay(30, n_attributes=1, seed=1), levels=2, signal="xyz")
+    told = json.loads(json.dumps(dict(pyramid.parameters)))
+    assert told["signal"] == "xyz"
+    assert {"levels", "partition", "prediction", "update", "attribute_weights"} <= told.keys()
+
+
+# --- stop rules -------------------------------------------------------------------------------
+
+
+def test_levels_is_a_maximum_and_12_by_default():
+    mesh = synthetic.hills(40, 40)
+    assert analyse(mesh, levels=3).n_levels == 3
+    assert analyse(mesh).n_levels == 12
+    assert analyse(mesh, levels=500).n_levels < 500
+
+
+@pytest.mark.parametrize("signal", ["z", "xyz"])
+@pytest.mark.parametrize("target", [1600, 1599, 700, 100])
+def test_target_vertices_is_met_exactly_where_it_can_be(target, signal):
+    pyramid = analyse(
+        synthetic.hills(40, 40), target_vertices=target, partition="quadric", signal=signal
+    )
+    assert pyramid.n_vertices(0) == target
+
+
+@pytest.mark.parametrize(("rule", "limit"), [("max_error", 5.0), ("max_rms", 1.0)])
+def test_no_level_is_above_the_tolerance_and_the_next_would_be(rule, limit):
+    from wavelet_core.accuracy.level_errors import level_errors
+
+    mesh = synthetic.hills(40, 40)
+    figure = {"max_error": "max_error_surface", "max_rms": "rmse_surface"}[rule]
+    pyramid = analyse(mesh, **{rule: limit}, partition="quadric")
+    errors = [getattr(row, figure) for row in level_errors(pyramid)]
+    assert 0 < max(errors) <= limit
+    one_more = analyse(mesh, levels=pyramid.n_levels + 1, partition="quadric")
+    assert getattr(level_errors(one_more)[-1], figure) > limit
+
+
+# --- progress ---------------------------------------------------------------------------------
+
+
+def test_progress_runs_from_0_to_1_and_never_back():
+    seen = []
+    analyse(synthetic.hills(30, 30), levels=6, progress=seen.append)
+    assert seen[0] == 0.0
+    assert seen[-1] == 1.0
+    assert all(a <= b for a, b in pairwise(seen))
+    assert len(seen) > 6
+
+
+@pytest.mark.parametrize("calls", [1, 2, 7])
+def test_a_progress_that_returns_false_cancels(calls):
+    left = [calls]
+
+    def progress(fraction):
+        left[0] -= 1
+        return left[0] > 0
+
+    with pytest.raises(Cancelled):
+        analyse(synthetic.hills(30, 30), levels=6, progress=progress)
+    assert left[0] == 0
+
+
+def test_a_progress_that_returns_nothing_goes_on():
+    assert analyse(synthetic.hills(10, 10), levels=2, progress=lambda _: None).n_levels == 2
+
+
+def test_an_error_in_progress_is_passed_on():
+    def progress(fraction):
+        raise KeyError(fraction)
+
+    with pytest.raises(KeyError):
+        analyse(synthetic.hills(10, 10), progress=progress)

@@ -1,0 +1,92 @@
+"""Costs of the surface-guided partition against a slow second opinion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from wavelet_core import TriangleMesh, analyse, synthetic
+from wavelet_core.mesh.location import surface_errors
+from wavelet_core.partition._mutable_level import SurfaceLevel
+
+
+def level_of(mesh, with_update=False):
+    heights = np.ascontiguousarray(mesh.vertices[:, 2:])
+    locked = np.zeros(mesh.n_vertices, dtype=bool)
+    faces = mesh.faces.astype(np.int32)
+    return SurfaceLevel(mesh.vertices[:, :2], heights, faces, locked, with_update)
+
+
+def squared_errors_of(level, mesh):
+    """Measure the level by the independent search of ``surface_errors``."""
+    position = np.full(mesh.n_vertices, -1)
+    position[level.ids] = np.arange(level.n_vertices)
+    slots = level._mesh.origin.reshape(-1, 3)[level._face_lives]
+    vertices = np.column_stack([mesh.vertices[level.ids, :2], level.heights])
+    coarse = TriangleMesh(vertices, position[level._ids[slots]])
+    errors = surface_errors(coarse, mesh.vertices)
+    assert np.isfinite(errors).all()
+    return float((errors**2).sum())
+
+
+def take_level(level, cutoff=np.inf):
+    level.rank("rms", np.inf, cutoff)
+    odd = level.independent(level.candidates(0.25, cutoff), level.n_vertices, np.inf)
+    cost = level.costs(odd)
+    level.remove(odd)
+    return cost
+
+
+@pytest.mark.parametrize("mesh", [synthetic.hills(25, 30), synthetic.scattered(400)])
+def test_costs_are_the_change_of_the_squared_errors(mesh):
+    level = level_of(mesh)
+    before = 0.0
+    for _ in range(6):
+        cost = take_level(level)
+        after = squared_errors_of(level, mesh)
+        assert after == pytest.approx(before + cost.sum(), rel=1e-9, abs=1e-9)
+        assert after == pytest.approx(level.squared_errors(), rel=1e-9, abs=1e-9)
+        before = after
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_sums_stay_true_under_updates(seed):
+    mesh = synthetic.scattered(400, seed=seed)
+    level = level_of(mesh, with_update=True)
+    for _ in range(8):
+        take_level(level)
+        assert squared_errors_of(level, mesh) == pytest.approx(level.squared_errors(), rel=1e-9)
+
+
+def test_a_finite_cutoff_leaves_the_costs_below_it_as_they_are():
+    mesh = synthetic.scattered(400)
+    whole, part = level_of(mesh), level_of(mesh)
+    take_level(whole)
+    take_level(part)
+    whole.rank("rms", np.inf, np.inf)
+    cutoff = float(np.median(whole._cost[whole._vertex_lives & np.isfinite(whole._cost)]))
+    part._cost[part._is_stale] = -np.inf  # so that all are looked at, whatever they cost before
+    part.rank("rms", np.inf, cutoff)
+    known = part._vertex_lives & ~part._is_stale & (part._cost < cutoff)
+    assert known.sum() > 50
+    np.testing.assert_array_equal(part._cost[known], whole._cost[known])
+    np.testing.assert_array_equal(part._target[known], whole._target[known])
+    unknown = part._vertex_lives & part._is_stale
+    assert (whole._cost[unknown] >= cutoff).all()
+
+
+def test_a_straight_outline_is_thinned_though_rotation_bends_it_by_rounding():
+    grid = synthetic.plane(30, 30)
+    angle = np.radians(20.0)
+    x, y = grid.vertices[:, 0], grid.vertices[:, 1]
+    turned = np.column_stack(
+        [
+            5e5 + x * np.cos(angle) - y * np.sin(angle),
+            5e6 + x * np.sin(angle) + y * np.cos(angle),
+            grid.vertices[:, 2],
+        ]
+    )
+    coarse = analyse(TriangleMesh(turned, grid.faces), target_vertices=8).mesh(0)
+    assert coarse.n_vertices == 8
+    assert (coarse.plan_areas > 0).all()
+    assert coarse.plan_areas.sum() == pytest.approx(grid.plan_areas.sum(), rel=1e-9)

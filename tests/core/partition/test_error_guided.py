@@ -1,0 +1,279 @@
+"""The surface-guided partition: what it keeps, when it stops, and against brute force."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from helpers import assert_pyramid_is_consistent, edges_of
+from helpers_meshes import grid_with_holes, meshes, random_delaunay
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from wavelet_core import Cancelled, MeshError, OptionError, TriangleMesh, analyse, synthetic
+from wavelet_core.mesh.location import surface_errors
+
+quick = settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+
+
+def errors_of(pyramid, mesh):
+    """Return the vertical errors of the coarsest level at all input vertices that it covers."""
+    errors = surface_errors(pyramid.mesh(0), mesh.vertices)
+    return errors[np.isfinite(errors)]
+
+
+def rms(errors):
+    return float(np.sqrt(np.mean(errors**2)))
+
+
+# -- every level is a step of the lifting scheme ---------------------------------------------------
+
+
+@quick
+@given(meshes(), st.sampled_from(["rms", "max"]), st.sampled_from([None, "none", "minimum_norm"]))
+def test_every_level_obeys_the_lifting_scheme(mesh, norm, update):
+    pyramid = analyse(mesh, levels=24, norm=norm, update=update)
+    assert pyramid.parameters["partition"] == "surface"
+    assert_pyramid_is_consistent(pyramid, mesh)
+
+
+@pytest.mark.parametrize("prediction", ["UG", "CL", "GL", "NNLS", "LS", "BL", "PL"])
+@pytest.mark.parametrize("update", ["MN", "MO", "ORMP", "none"])
+@pytest.mark.parametrize("signal", ["z", "xyz"])
+def test_every_pair_of_filters_follows_the_partition(prediction, update, signal):
+    mesh = random_delaunay(60, n_attributes=1, seed=3)
+    pyramid = analyse(
+        mesh, 4, partition="surface", prediction=prediction, update=update, signal=signal
+    )
+    assert pyramid.n_levels == 4
+    assert_pyramid_is_consistent(pyramid, mesh)
+
+
+@quick
+@given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.9))
+def test_locked_vertices_stay_as_they_are(seed, share):
+    mesh = random_delaunay(70, seed=seed)
+    locked = np.random.default_rng(seed).random(70) < share
+    pyramid = analyse(mesh, levels=20, locked=locked)
+    assert_pyramid_is_consistent(pyramid, mesh)
+    ids = pyramid.vertex_ids(0)
+    assert np.isin(np.flatnonzero(locked), ids).all()
+    np.testing.assert_array_equal(
+        pyramid.mesh(0).vertices[locked[ids]], mesh.vertices[ids[locked[ids]]]
+    )
+
+
+# -- against brute force ---------------------------------------------------------------------------
+
+
+def squared_sum_after(mesh, removed, target):
+    """Return the summed squared error at all vertices after the collapse."""
+    faces = np.where(mesh.faces == removed, target, mesh.faces)
+    a, b, c = faces.T
+    faces = faces[(a != b) & (b != c) & (c != a)]
+    collapsed = TriangleMesh(mesh.vertices, faces)
+    if collapsed.plan_areas.min() <= 1e-12:
+        return np.inf
+    return float(np.nansum(surface_errors(collapsed, mesh.vertices) ** 2))
+
+
+def test_the_first_removals_are_the_cheapest_and_their_targets_the_best():
+    mesh = random_delaunay(40, seed=11)
+    pyramid = analyse(mesh, 1, partition="surface", update="none", removal_fraction=1.0)
+    neighbours = {v: set() for v in range(40)}
+    for a, b in edges_of(mesh.faces):
+        neighbours[a].add(int(b))
+        neighbours[b].add(int(a))
+    cost = {}
+    for v in pyramid.vertex_ids(0).tolist() + pyramid.detail(0).vertex_ids.tolist():
+        cost[v] = {a: squared_sum_after(mesh, v, a) for a in sorted(neighbours[v])}
+    step = pyramid.steps[0]
+    for odd, target in zip(step.odd.tolist(), step.target.tolist(), strict=True):
+        legal = {a: c for a, c in cost[odd].items() if np.isfinite(c)}
+        assert legal[target] == pytest.approx(min(legal.values()))
+    # stars of one step share no face, so their costs add up
+    total = sum(cost[odd][target] for odd, target in zip(step.odd, step.target, strict=True))
+    assert float((errors_of(pyramid, mesh) ** 2).sum()) == pytest.approx(total)
+    one = analyse(mesh, partition="surface", update="none", target_vertices=39)
+    interior = {v: min(c.values()) for v, c in cost.items() if v in step.odd}
+    assert one.detail(0).vertex_ids[0] == min(interior, key=interior.get)
+
+
+def test_a_plane_goes_at_no_cost_down_to_its_corners():
+    mesh = synthetic.plane(9, 11)
+    pyramid = analyse(mesh, target_vertices=4)
+    corners = {(0.0, 0.0), (10.0, 0.0), (0.0, 8.0), (10.0, 8.0)}
+    assert {tuple(xy) for xy in pyramid.mesh(0).vertices[:, :2]} == corners
+    assert np.abs(errors_of(pyramid, mesh)).max() < 1e-12
+
+
+def test_a_roof_keeps_its_ridge():
+    mesh = synthetic.ridge(21, 31)
+    pyramid = analyse(mesh, max_error=1e-9)
+    ridge = pyramid.mesh(0).vertices[pyramid.mesh(0).vertices[:, 2] > 9.999]
+    assert pyramid.n_vertices(0) == 6
+    assert sorted(ridge[:, 0]) == [0.0, 30.0]
+
+
+def test_a_number_of_levels_thins_flat_terrain_and_relief_alike():
+    """Whole metres leave flats that cost nothing; without an aim they must not hold a level up."""
+    mesh = synthetic.hills(40, 50)
+    vertices = mesh.vertices.copy()
+    vertices[:, 2] = np.maximum(np.round(vertices[:, 2]), 310.0)
+    pyramid = analyse(TriangleMesh(vertices, mesh.faces), levels=6)
+    sizes = [pyramid.n_vertices(level) for level in range(7)]
+    assert all(coarse < 0.95 * fine for coarse, fine in pairwise(sizes))
+
+
+# -- stop rules ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("n_vertices", [4, 5, 17, 100, 333, 719, 720, 5000])
+@pytest.mark.parametrize("norm", ["rms", "max"])
+def test_the_number_of_vertices_is_met(n_vertices, norm):
+    mesh = synthetic.hills(24, 30)
+    pyramid = analyse(mesh, target_vertices=n_vertices, norm=norm)
+    assert pyramid.n_vertices(0) == min(n_vertices, 720)
+    assert_pyramid_is_consistent(pyramid, mesh)
+
+
+@quick
+@given(meshes(max_vertices=120), st.floats(0.0, 1.0), st.sampled_from([None, "minimum_norm"]))
+def test_no_input_vertex_is_off_by_more_than_the_tolerance(mesh, share, update):
+    tolerance = share * np.ptp(mesh.vertices[:, 2])
+    pyramid = analyse(mesh, max_error=tolerance, update=update)
+    rounding = 1e-9 * np.abs(mesh.vertices[:, 2]).max()
+    assert np.abs(errors_of(pyramid, mesh)).max(initial=0.0) <= tolerance + rounding
+
+
+@pytest.mark.parametrize("max_rms", [0.0, 0.05, 0.5, 3.0])
+def test_the_root_mean_square_is_kept_and_used_up(max_rms):
+    mesh = synthetic.hills(40, 50)
+    errors = errors_of(analyse(mesh, max_rms=max_rms), mesh)
+    assert rms(errors) <= max_rms + 1e-9
+    assert rms(errors) >= 0.95 * max_rms
+
+
+def test_max_norm_trades_mean_square_for_the_largest_error():
+    mesh = synthetic.scattered(2000, seed=7)
+    by_norm = {
+        norm: errors_of(analyse(mesh, target_vertices=200, norm=norm), mesh)
+        for norm in ("rms", "max")
+    }
+    assert np.abs(by_norm["max"]).max() < 0.9 * np.abs(by_norm["rms"]).max()
+    assert rms(by_norm["rms"]) < rms(by_norm["max"])
+
+
+def test_it_beats_the_papers_partition_and_a_subsample():
+    mesh = synthetic.hills(33, 41)
+    ours = analyse(mesh, target_vertices=99)
+    papers = analyse(mesh, target_vertices=99, partition="quadric")
+    x, y = np.unique(mesh.vertices[:, 0]), np.unique(mesh.vertices[:, 1])
+    z = mesh.vertices[:, 2].reshape(33, 41)
+    rows, columns = np.round(np.linspace(0, 32, 9)), np.round(np.linspace(0, 40, 11))
+    rows, columns = rows.astype(int), columns.astype(int)
+    coarse = TriangleMesh.from_grid(z[np.ix_(rows, columns)], x=x[columns], y=y[rows])
+    regular = rms(surface_errors(coarse, mesh.vertices))
+    assert rms(errors_of(ours, mesh)) < 0.8 * min(rms(errors_of(papers, mesh)), regular)
+
+
+# -- outlines, holes, attributes -------------------------------------------------------------------
+
+
+@quick
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.03, 0.15]))
+def test_outline_and_holes_keep_their_place(seed, hole_share):
+    mesh = grid_with_holes(11, 13, seed=seed, hole_share=hole_share)
+    pyramid = analyse(mesh, levels=40)
+    coarse = pyramid.mesh(0)
+    assert coarse.plan_areas.sum() == pytest.approx(mesh.plan_areas.sum())
+    uncovered = np.isnan(surface_errors(coarse, mesh.vertices))
+    assert not uncovered[np.unique(mesh.faces)].any()
+
+
+def test_a_weighted_attribute_is_kept_better():
+    x, y = np.meshgrid(np.arange(40.0), np.arange(30.0))
+    step = np.where(x + 0.3 * y > 22.3, 1.0, 0.0)
+    mesh = TriangleMesh.from_grid(
+        np.sin(x / 5) + np.cos(y / 4), x=x[0], y=y[:, 0], attributes=step, attribute_names=["class"]
+    )
+
+    def attribute_error(weight):
+        coarse = analyse(mesh, target_vertices=150, attribute_weights=[weight]).mesh(0)
+        lifted = TriangleMesh(
+            np.column_stack([coarse.vertices[:, :2], coarse.attributes]), coarse.faces
+        )
+        points = np.column_stack([mesh.vertices[:, :2], mesh.attributes])
+        return rms(surface_errors(lifted, points))
+
+    light, heavy = attribute_error(0.0), attribute_error(3.0)
+    assert heavy < 0.6 * light
+
+
+# -- refusals, cancelling, determinism -------------------------------------------------------------
+
+
+@pytest.mark.parametrize("fraction", [0.0, -1.0, 1.5, np.nan])
+def test_a_removal_fraction_out_of_range_is_refused(fraction):
+    with pytest.raises(OptionError, match="removal_fraction"):
+        analyse(synthetic.fan(), removal_fraction=fraction)
+
+
+def test_an_unknown_norm_is_refused():
+    with pytest.raises(OptionError, match="norm"):
+        analyse(synthetic.fan(), norm="median")
+
+
+def test_three_faces_on_one_edge_are_refused():
+    vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0.4, 0.9, 1]]
+    with pytest.raises(MeshError, match="edge"):
+        analyse(TriangleMesh(vertices, [[0, 1, 2], [1, 3, 2], [0, 1, 4]]))
+
+
+def test_it_can_be_cancelled_between_levels():
+    calls = []
+
+    def progress(fraction):
+        calls.append(fraction)
+        return len(calls) < 6
+
+    with pytest.raises(Cancelled):
+        analyse(synthetic.hills(30, 30), target_vertices=20, progress=progress)
+    assert len(calls) == 6
+    assert calls == sorted(calls)
+
+
+PROGRAM = """
+import sys, hashlib
+from wavelet_core import analyse, synthetic
+digest = hashlib.sha256()
+for options in ({"target_vertices": 120}, {"max_error": 1.0}, {"max_rms": 0.5}):
+    pyramid = analyse(synthetic.scattered(900, seed=2), **options)
+    digest.update(pyramid.coarse.tobytes())
+    for step in pyramid.steps:
+        for name in ("odd", "target", "indices", "weights", "details"):
+            digest.update(getattr(step, name).tobytes())
+print(digest.hexdigest())
+"""
+
+
+def test_same_bytes_for_any_number_of_threads_and_without_numba():
+    digests = set()
+    for variables in (
+        {"TERRAIN_WAVELETS_THREADS": "1"},
+        {"TERRAIN_WAVELETS_THREADS": "3"},
+        {"TERRAIN_WAVELETS_NO_NUMBA": "1"},
+    ):
+        done = subprocess.run(
+            [sys.executable, "-W", "ignore", "-c", PROGRAM],
+            env=os.environ | variables,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        digests.add(done.stdout.strip())
+    assert len(digests) == 1

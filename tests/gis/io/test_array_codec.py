@@ -1,0 +1,141 @@
+"""Arrays survive their chunks, and no false claim is believed."""
+
+import zlib
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from wavelet_core.errors import PyramidError
+from wavelet_gis.io import array_codec
+from wavelet_gis.io.array_codec import ArrayHeader, decode_array, encode_array, header_of
+
+ANY_ARRAY = st.sampled_from(["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"]).flatmap(
+    lambda code: hnp.arrays(code, hnp.array_shapes(min_dims=1, max_dims=2, min_side=0, max_side=30))
+)
+
+
+def round_trip(array, pool=None):
+    chunks = list(encode_array(array, pool))
+    header = header_of(array)
+    header = ArrayHeader.checked(header.dtype, list(header.shape), header.filter, header.chunk_rows)
+    assert len(chunks) == header.n_chunks
+    return decode_array(header, chunks, sum(map(len, chunks)), pool)
+
+
+@given(ANY_ARRAY, st.integers(1, 64))
+def test_any_array_comes_back_bit_for_bit(array, chunk_bytes):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(array_codec, "CHUNK_BYTES", chunk_bytes)
+        back = round_trip(array)
+    assert back.dtype == array.dtype.newbyteorder("<")
+    assert back.shape == array.shape
+    assert back.tobytes() == array.tobytes()
+
+
+def test_booleans_become_bytes_and_big_endian_little():
+    assert round_trip(np.array([True, False])).tolist() == [1, 0]
+    assert round_trip(np.arange(5, dtype=">i4")).dtype == np.dtype("<i4")
+
+
+def test_threads_change_nothing(monkeypatch):
+    monkeypatch.setattr(array_codec, "CHUNK_BYTES", 1 << 10)
+    array = np.random.default_rng(0).normal(size=(5000, 2))
+    with ThreadPoolExecutor(3) as pool:
+        assert list(encode_array(array, pool)) == list(encode_array(array))
+        assert round_trip(array, pool).tobytes() == array.tobytes()
+
+
+def test_the_faces_of_a_grid_shrink():
+    row = np.arange(10_000, dtype=np.int32)[:, None]
+    faces = row + np.array([0, 1, 101], dtype=np.int32)
+    assert sum(map(len, encode_array(faces))) < faces.nbytes / 100
+
+
+def test_what_is_no_number_is_refused():
+    for array in (np.array(["a"]), np.array([{}]), np.zeros((2, 2, 2)), np.zeros(3, complex)):
+        with pytest.raises(PyramidError, match="cannot be stored"):
+            header_of(array)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        ("O", [3], "shuffle", 1),
+        ("<U9", [3], "shuffle", 1),
+        ("<f8", [-1], "shuffle", 1),
+        ("<f8", [1, 2, 3], "shuffle", 1),
+        ("<f8", [], "shuffle", 1),
+        ("<f8", [2.5], "shuffle", 1),
+        ("<f8", [True], "shuffle", 1),
+        ("<f8", "3", "shuffle", 1),
+        ("<f8", [1 << 50], "shuffle", 1),
+        ("<f8", [1 << 30], "shuffle", 1 << 30),  # one chunk of 8 GiB
+        ("<f8", [3], "pickle", 1),
+        ("<f8", [3], "shuffle", 0),
+        ("<f8", [3], "shuffle", None),
+    ],
+)
+def test_claims_that_no_file_of_ours_makes(claim):
+    with pytest.raises(PyramidError, match="damaged"):
+        ArrayHeader.checked(*claim)
+
+
+def header(n_rows, chunk_rows=4, dtype="<f8"):
+    return ArrayHeader.checked(dtype, [n_rows], "shuffle", chunk_rows)
+
+
+def chunk_of(n_bytes):
+    return zlib.compress(bytes(n_bytes))
+
+
+@pytest.mark.parametrize(
+    ("declared", "chunks"),
+    [
+        (header(4), []),  # too few
+        (header(4), [chunk_of(32), chunk_of(32)]),  # too many
+        (header(8), [chunk_of(32)]),
+        (header(4), [chunk_of(31)]),  # too short
+        (header(4), [chunk_of(40)]),  # a little bomb
+        (header(4), [chunk_of(10_000_000)]),  # a larger one
+        (header(4), [b"nothing compressed"]),
+        (header(4), [chunk_of(32)[:-1]]),  # no checksum at its end
+        (header(4), [chunk_of(32) + b"more"]),
+        (header(4), [chunk_of(32)[:-4] + b"\0\0\0\1"]),  # a wrong checksum
+        (header(4), [b""]),
+    ],
+)
+def test_chunks_that_do_not_hold_what_is_declared(declared, chunks):
+    with pytest.raises(PyramidError, match="damaged"):
+        decode_array(declared, chunks, max(sum(map(len, chunks)), 1))
+
+
+def test_a_bomb_is_not_expanded(monkeypatch):
+    asked = []
+    original = zlib.decompressobj
+
+    class Watched:
+        def __init__(self):
+            self._expander = original()
+
+        def decompress(self, data, limit):
+            out = self._expander.decompress(data, limit)
+            asked.append(len(out))
+            return out
+
+        def __getattr__(self, name):
+            return getattr(self._expander, name)
+
+    monkeypatch.setattr(array_codec.zlib, "decompressobj", Watched)
+    with pytest.raises(PyramidError, match="damaged"):
+        decode_array(header(4), [chunk_of(100_000_000)], 100_000)
+    assert max(asked) <= 32
+
+
+def test_a_size_that_compression_cannot_reach_gets_no_memory():
+    huge = header(1 << 36, chunk_rows=1 << 20)
+    with pytest.raises(PyramidError, match="more than compression can hold"):
+        decode_array(huge, [chunk_of(8 << 20)], 8200)

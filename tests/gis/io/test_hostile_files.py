@@ -1,0 +1,318 @@
+"""Pyramid files from strangers: whatever they claim, reading ends in one clear error.
+
+Each case copies a sound file and damages it through SQLite, as somebody with bad intent would.
+"""
+
+import contextlib
+import json
+import resource
+import shutil
+import sqlite3
+import zlib
+
+import numpy as np
+import pytest
+
+from wavelet_core.errors import PyramidError, WaveletError
+from wavelet_gis.errors import InputFileError
+from wavelet_gis.io.array_codec import encode_array, header_of
+from wavelet_gis.io.pyramid_file import read_pyramid, read_summary
+
+
+@pytest.fixture(params=["raster", "cloud"])
+def sound(request):
+    return request.getfixturevalue(f"{request.param}_pyramid")
+
+
+@pytest.fixture
+def damaged(sound, tmp_path):
+    """Return a function that runs SQL on a copy and returns its path."""
+
+    def damage(*statements):
+        path = tmp_path / "damaged.gpkg"
+        shutil.copy(sound, path)
+        connection = sqlite3.connect(path)
+        with connection:
+            for statement in statements:
+                sql, *parameters = statement if isinstance(statement, tuple) else (statement,)
+                connection.execute(sql, parameters)
+        connection.close()
+        return path
+
+    return damage
+
+
+def replace_array(name, array):
+    """Return the statements that put another array, well packed, in the place of one."""
+    header = header_of(array)
+    return [
+        (
+            "DELETE FROM wavelet_chunks WHERE array_id = "
+            "(SELECT id FROM wavelet_arrays WHERE name = ?)",
+            name,
+        ),
+        (
+            "UPDATE wavelet_arrays SET dtype = ?, shape = ?, filter = ?, chunk_rows = ? "
+            "WHERE name = ?",
+            header.dtype,
+            json.dumps(header.shape),
+            header.filter,
+            header.chunk_rows,
+            name,
+        ),
+        *[
+            (
+                "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES "
+                "((SELECT id FROM wavelet_arrays WHERE name = ?), ?, ?)",
+                name,
+                sequence,
+                chunk,
+            )
+            for sequence, chunk in enumerate(encode_array(array))
+        ],
+    ]
+
+
+@pytest.mark.parametrize("table", ["metadata", "levels", "arrays", "chunks"])
+def test_a_missing_table(damaged, table):
+    with pytest.raises(InputFileError, match=f"no table wavelet_{table}"):
+        read_pyramid(damaged(f"DROP TABLE wavelet_{table}"))
+
+
+def test_a_view_that_poses_as_a_table(damaged):
+    endless = (
+        "CREATE VIEW wavelet_chunks AS WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 "
+        "FROM n) SELECT i AS id, 1 AS array_id, i AS sequence, zeroblob(1000) AS data FROM n"
+    )
+    with pytest.raises(InputFileError, match="no table wavelet_chunks"):
+        read_pyramid(damaged("DROP TABLE wavelet_chunks", endless))
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "DELETE FROM wavelet_metadata",
+        "DELETE FROM wavelet_metadata WHERE name = 'format'",
+        "UPDATE wavelet_metadata SET value = '{\"name\": \"another\"}' WHERE name = 'format'",
+        "UPDATE wavelet_metadata SET value = '[]' WHERE name = 'format'",
+        "UPDATE wavelet_metadata SET value = replace(value, '\"version\": 1', '\"version\": 2')",
+        "ALTER TABLE wavelet_arrays RENAME COLUMN shape TO form",
+        "ALTER TABLE wavelet_levels RENAME COLUMN n_faces TO faces",
+    ],
+)
+def test_no_pyramid_of_ours(damaged, statement):
+    path = damaged(statement)
+    for read in (read_pyramid, read_summary):
+        if "wavelet_arrays" in statement and read is read_summary:
+            continue
+        with pytest.raises(InputFileError):
+            read(path)
+
+
+@pytest.mark.parametrize("name", ["pyramid", "crs", "frame", "source", "vertical_unit", "history"])
+def test_missing_metadata(damaged, name):
+    with pytest.raises(PyramidError, match="damaged"):
+        read_pyramid(damaged(("DELETE FROM wavelet_metadata WHERE name = ?", name)))
+
+
+@pytest.mark.parametrize("value", ["", "{", "[" * 100_000, "nonsense", "7", "[]", '"text"', "null"])
+@pytest.mark.parametrize("name", ["pyramid", "crs", "frame", "source"])
+def test_metadata_of_another_kind(damaged, name, value):
+    with pytest.raises(WaveletError):
+        read_pyramid(damaged(("UPDATE wavelet_metadata SET value = ? WHERE name = ?", value, name)))
+
+
+def with_pyramid_field(**changes):
+    return [
+        (
+            f"UPDATE wavelet_metadata SET value = json_set(value, '$.{key}', json(?)) "
+            "WHERE name = 'pyramid'",
+            json.dumps(value),
+        )
+        for key, value in changes.items()
+    ]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"n_levels": 5},
+        {"n_levels": -1},
+        {"n_levels": 10**9},
+        {"n_levels": 2.5},
+        {"n_levels": "all"},
+        {"n_levels": 3},  # the steps of the others are then missing from the coarse end
+        {"channels": []},
+        {"channels": ["z", "z"]},
+        {"channels": ["x"]},
+        {"channels": 3},
+        {"signal": "xyz"},
+        {"signal": "w"},
+        {"signal": None},
+        {"update": "eval"},
+        {"has_locked": True},
+        {"parameters": 5},
+    ],
+)
+def test_claims_about_the_pyramid(damaged, change):
+    with pytest.raises(PyramidError):
+        read_pyramid(damaged(*with_pyramid_field(**change)))
+
+
+@pytest.mark.parametrize(
+    ("name", "array"),
+    [
+        ("faces", np.zeros((4, 2), np.int32)),
+        ("faces", np.full((4, 3), 10**6, np.int32)),
+        ("faces", np.full((4, 3), -1, np.int32)),
+        ("faces", np.zeros((4, 3))),
+        ("faces", np.zeros(12, np.int32)),
+        ("coarse", np.zeros((3, 3))),
+        ("coarse", np.full((5, 1), np.nan)),
+        ("horizontal", np.zeros((7, 2))),
+        ("horizontal", np.zeros(7)),
+        ("steps/0002/odd", np.zeros(5, np.int32)),
+        ("steps/0002/odd", np.arange(3, dtype=np.int64)),
+        ("steps/0002/odd", np.empty(0, np.int32)),
+        ("steps/0001/target", np.full(5, 2**31 - 1, np.int32)),
+        ("steps/0001/indptr", np.arange(9, dtype=np.int64)[::-1].copy()),
+        ("steps/0001/indices", np.full(5, -7, np.int32)),
+        ("steps/0001/weights", np.full(5, np.inf)),
+        ("steps/0003/details", np.zeros((2, 9))),
+        ("steps/0003/details", np.zeros(2)),
+    ],
+)
+def test_arrays_of_another_shape_type_or_range(damaged, name, array):
+    with pytest.raises(PyramidError):
+        read_pyramid(damaged(*replace_array(name, array)))
+
+
+@pytest.mark.parametrize("part", ["odd", "target", "indices"])
+@pytest.mark.parametrize("value", [-1, 2**31 - 1])
+def test_one_index_out_of_range(damaged, sound, part, value):
+    step = read_pyramid(sound).pyramid.steps[1]
+    array = getattr(step, part).copy()
+    array[len(array) // 2] = value
+    with pytest.raises(PyramidError, match="range"):
+        read_pyramid(damaged(*replace_array(f"steps/0001/{part}", array)))
+
+
+def test_an_odd_vertex_twice_and_a_target_that_is_odd(damaged, sound):
+    step = read_pyramid(sound).pyramid.steps[1]
+    twice = step.odd.copy()
+    twice[1] = twice[0]
+    with pytest.raises(PyramidError, match="twice"):
+        read_pyramid(damaged(*replace_array("steps/0001/odd", twice)))
+    target = step.target.copy()
+    target[0] = step.odd[1]
+    with pytest.raises(PyramidError, match="odd itself"):
+        read_pyramid(damaged(*replace_array("steps/0001/target", target)))
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "UPDATE wavelet_arrays SET shape = '[1000000000000]' WHERE name = 'coarse'",
+        "UPDATE wavelet_arrays SET shape = '[100000000, 1]' WHERE name = 'coarse'",
+        "UPDATE wavelet_arrays SET shape = '[-4, 1]' WHERE name = 'coarse'",
+        "UPDATE wavelet_arrays SET shape = '{}' WHERE name = 'coarse'",
+        "UPDATE wavelet_arrays SET shape = 'x' WHERE name = 'coarse'",
+        "UPDATE wavelet_arrays SET shape = x'00ff' WHERE name = 'coarse'",
+        "UPDATE wavelet_arrays SET dtype = 'O'",
+        "UPDATE wavelet_arrays SET dtype = '<f4' WHERE name = 'coarse'",
+        "UPDATE wavelet_arrays SET filter = 'pickle'",
+        "UPDATE wavelet_arrays SET chunk_rows = 0",
+        "UPDATE wavelet_arrays SET chunk_rows = 1",
+        "UPDATE wavelet_arrays SET chunk_rows = 'x'",
+        "DELETE FROM wavelet_arrays WHERE name = 'faces'",
+        "DELETE FROM wavelet_arrays WHERE name LIKE 'source/%'",
+        "DELETE FROM wavelet_chunks",
+        "DELETE FROM wavelet_chunks WHERE id % 5 = 0",
+        "UPDATE wavelet_chunks SET sequence = sequence + 1",
+        "UPDATE wavelet_chunks SET sequence = 'first'",
+        "UPDATE wavelet_chunks SET data = 'text'",
+        "UPDATE wavelet_chunks SET data = 5",
+        "UPDATE wavelet_chunks SET data = zeroblob(100)",
+        "UPDATE wavelet_chunks SET data = substr(data, 1, length(data) / 2)",
+        "UPDATE wavelet_chunks SET data = data || data",
+        "INSERT INTO wavelet_chunks (array_id, sequence, data) SELECT array_id, sequence + 1, data "
+        "FROM wavelet_chunks",
+    ],
+)
+def test_damaged_tables(damaged, statement):
+    with pytest.raises(WaveletError):
+        read_pyramid(damaged(statement))
+
+
+def test_a_bomb_costs_no_memory(damaged):
+    bomb = zlib.compress(bytes(1 << 30), 9)  # 1 GiB out of 1 MiB
+    path = damaged(
+        (
+            "UPDATE wavelet_chunks SET data = ? WHERE array_id = "
+            "(SELECT id FROM wavelet_arrays WHERE name = 'coarse')",
+            bomb,
+        )
+    )
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    with pytest.raises(PyramidError, match="coarse: a chunk does not expand"):
+        read_pyramid(path)
+    grown_kib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+    assert grown_kib < 200_000
+
+
+def test_a_value_beyond_all_bounds(damaged):
+    path = damaged(
+        "UPDATE wavelet_chunks SET data = zeroblob(100000000) WHERE array_id = "
+        "(SELECT id FROM wavelet_arrays WHERE name = 'coarse')"
+    )
+    with pytest.raises(InputFileError, match="big"):
+        read_pyramid(path)
+
+
+def test_thousands_of_arrays_and_keys_do_no_harm(damaged, sound):
+    path = damaged(
+        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 20000) "
+        "INSERT INTO wavelet_arrays (name, dtype, shape, filter, chunk_rows) "
+        "SELECT 'extra' || i, '<f8', '[5]', 'shuffle', 5 FROM n",
+        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 20000) "
+        "INSERT INTO wavelet_levels (level, n_vertices, n_faces) SELECT i, 1, 1 FROM n",
+    )
+    assert read_pyramid(path).pyramid.n_levels == read_pyramid(sound).pyramid.n_levels
+
+
+def test_figures_that_are_none(damaged):
+    path = damaged(
+        "UPDATE wavelet_levels SET rmse_surface = 'low', n_vertices = x'00', n_faces = 9e999"
+    )
+    assert read_pyramid(path).errors is None
+    level = read_summary(path)["levels"][0]
+    assert np.isnan([level["rmse_surface"], level["n_vertices"], level["n_faces"]]).all()
+
+
+def test_changed_details_are_not_passed_off_as_the_original(damaged, sound):
+    details = read_pyramid(sound).pyramid.steps[3].details.copy()
+    details[0, 0] += 3.0
+    path = damaged(*replace_array("steps/0003/details", details))
+    with pytest.raises(PyramidError, match="checksum"):
+        read_pyramid(path).restore()
+
+
+def test_a_source_of_another_size(damaged):
+    path = damaged(
+        "UPDATE wavelet_metadata SET value = json_set(value, '$.n_points', 1 << 40, '$.shape', "
+        "json('[41, 50]')) WHERE name = 'source'"
+    )
+    with pytest.raises(PyramidError):
+        read_pyramid(path)
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_bytes_changed_at_random(sound, tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    content = bytearray(sound.read_bytes())
+    for position in rng.integers(100, len(content), 20):
+        content[position] = rng.integers(0, 256)
+    path = tmp_path / "random.gpkg"
+    path.write_bytes(content)
+    with contextlib.suppress(WaveletError):  # refused; else it is the original, by its checksum
+        read_pyramid(path).restore()

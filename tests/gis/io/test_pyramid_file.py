@@ -1,0 +1,182 @@
+"""A pyramid file holds all of a pyramid, and writes the same bytes for the same input."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from wavelet_core import Cancelled, TriangleMesh, analyse
+from wavelet_core.synthetic import hills
+from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.io.pyramid_file import read_pyramid, read_summary, write_pyramid
+from wavelet_gis.model.cloud import PointCloud
+from wavelet_gis.model.dem import Dem
+from wavelet_gis.model.terrain_pyramid import MeshSource, PyramidRecord
+
+
+def assert_same_pyramid(actual, expected):
+    assert actual.channels == expected.channels
+    assert (actual.signal, actual.update) == (expected.signal, expected.update)
+    assert dict(actual.parameters) == dict(expected.parameters)
+    for name in ("faces", "horizontal", "coarse", "locked"):
+        a, b = getattr(actual, name), getattr(expected, name)
+        assert (a is None) == (b is None), name
+        if a is not None:
+            assert a.dtype == b.dtype
+            assert a.tobytes() == b.tobytes(), name
+    assert actual.n_levels == expected.n_levels
+    for step, other in zip(actual.steps, expected.steps, strict=True):
+        for name in ("odd", "target", "indptr", "indices", "weights", "details"):
+            a, b = getattr(step, name), getattr(other, name)
+            assert a.dtype == b.dtype
+            assert a.tobytes() == b.tobytes(), name
+
+
+def record_of(mesh, **options):
+    return PyramidRecord(
+        pyramid=analyse(mesh, **options),
+        system=CoordinateSystem(),
+        frame=LocalFrame(),
+        vertical_unit="metre",
+        source=MeshSource(),
+        source_name="hills",
+    )
+
+
+@pytest.mark.parametrize("name", ["raster", "cloud"])
+def test_all_of_it_is_read_again(name, request):
+    record = request.getfixturevalue(f"{name}_record")
+    back = read_pyramid(request.getfixturevalue(f"{name}_pyramid"))
+    assert_same_pyramid(back.pyramid, record.pyramid)
+    assert back.system == record.system
+    assert back.frame == record.frame
+    assert back.errors == record.errors
+    assert back.source.checksum == record.source.checksum
+    assert isinstance(back.restore(), Dem if name == "raster" else PointCloud)
+
+
+@pytest.mark.parametrize("design", ["GLMN", "ULMO", "NNLSORMP", "CLMN"])
+@pytest.mark.parametrize("signal", ["z", "xyz"])
+def test_every_filter_and_signal(tmp_path, signal, design):
+    design = design.replace("ULMO", "UGMO")
+    record = record_of(hills(12, 15), levels=3, prediction=design, signal=signal)
+    write_pyramid(tmp_path / "a.gpkg", record)
+    back = read_pyramid(tmp_path / "a.gpkg")
+    assert_same_pyramid(back.pyramid, record.pyramid)
+    restored = back.restore()
+    assert isinstance(restored, TriangleMesh)
+    np.testing.assert_allclose(restored.vertices, hills(12, 15).vertices, atol=1e-9)
+
+
+def test_locked_vertices_and_no_levels(tmp_path):
+    mesh = hills(10, 10)
+    locked = np.arange(mesh.n_vertices) % 3 == 0
+    for k, record in enumerate([record_of(mesh, locked=locked), record_of(mesh, levels=0)]):
+        write_pyramid(tmp_path / f"{k}.gpkg", record)
+        assert_same_pyramid(read_pyramid(tmp_path / f"{k}.gpkg").pyramid, record.pyramid)
+
+
+def test_vertices_of_no_face(tmp_path):
+    grid = np.zeros((6, 6))
+    valid = np.ones((6, 6), bool)
+    valid[:2, 1] = valid[1, 0] = False  # the corner cell stands alone
+    mesh = TriangleMesh.from_grid(grid, np.arange(6.0), np.arange(6.0), valid=valid)
+    record = record_of(mesh, levels=2)
+    write_pyramid(tmp_path / "a.gpkg", record)
+    assert read_pyramid(tmp_path / "a.gpkg").restore().n_vertices == 33
+
+
+def test_an_altered_pyramid_is_stored_as_such(raster_record, tmp_path):
+    pyramid = raster_record.pyramid
+    flattened = pyramid.with_parts(coarse=pyramid.coarse * 0 + 250.0)
+    altered = raster_record.with_pyramid(flattened, "coarse heights set to 250")
+    write_pyramid(tmp_path / "a.gpkg", altered)
+    back = read_pyramid(tmp_path / "a.gpkg")
+    assert back.history == ("coarse heights set to 250",)
+    assert not back.source.is_exact
+    assert back.errors is None
+    values = back.restore().values
+    assert values.dtype == np.float32
+    assert np.abs(values[values > -9000] - 250).max() < 50
+
+
+def test_the_summary_needs_no_arrays(raster_pyramid, raster_record):
+    summary = read_summary(raster_pyramid)
+    assert summary["format"]["version"] == 1
+    assert summary["pyramid"]["n_vertices"] == raster_record.source.n_vertices
+    assert summary["source"]["shape"] == [40, 50]
+    assert [level["level"] for level in summary["levels"]] == [4, 3, 2, 1, 0]
+    assert summary["levels"][-1]["rmse_surface"] > 0
+
+
+def test_it_is_valid_without_layers(cloud_pyramid, validate_gpkg):
+    validate_gpkg(cloud_pyramid)
+
+
+def test_the_same_input_gives_the_same_bytes(raster_record, tmp_path, monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    from wavelet_gis.io.vector import add_layers
+    from wavelet_gis.products.layers import coarse_layers, detail_layers
+
+    for name in ("a.gpkg", "b.gpkg"):
+        write_pyramid(tmp_path / name, raster_record)
+        layers = [*coarse_layers(raster_record), *detail_layers(raster_record)]
+        add_layers(tmp_path / name, layers, raster_record.system)
+    assert (tmp_path / "a.gpkg").read_bytes() == (tmp_path / "b.gpkg").read_bytes()
+
+
+def test_progress_rises_and_stops(raster_record, tmp_path):
+    seen = []
+    write_pyramid(tmp_path / "a.gpkg", raster_record, seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == pytest.approx(1)
+    with pytest.raises(Cancelled):
+        write_pyramid(tmp_path / "b.gpkg", raster_record, lambda fraction: fraction < 0.5)
+
+
+LIGHT = [
+    "crs.frame",
+    "model.dem",
+    "model.cloud",
+    "model.cloud_origin",
+    "model.exact_restore",
+    "io.array_codec",
+    "io.geopackage",
+    "model.terrain_pyramid",
+    "io.pyramid_file",
+    "products.layers",
+    "products.styles",
+    "products.wkb",
+    "products.rasterise",
+    "io.meshes",
+    "io.atomic",
+    "cli.console",
+    "errors",
+    "model.ground",
+]
+
+
+HEAVY = {"rasterio", "pyogrio", "pyproj", "laspy", "lazrs", "shapely", "tqdm"}
+
+
+def test_what_qgis_uses_needs_numpy_and_scipy_only(raster_pyramid):
+    code = f"""
+import sys
+
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in {HEAVY!r}:
+            raise ImportError(name + " is absent")
+
+sys.meta_path.insert(0, Absent())
+for name in {LIGHT!r}:
+    __import__("wavelet_gis." + name)
+from wavelet_gis.io.pyramid_file import read_pyramid
+from wavelet_gis.products.layers import coarse_layers
+record = read_pyramid({str(raster_pyramid)!r})
+assert len(list(coarse_layers(record))) == 2
+print(record.restore().values.shape)
+"""
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert result.stdout.strip() == "(40, 50)", result.stderr

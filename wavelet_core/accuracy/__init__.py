@@ -1,0 +1,1 @@
+"""Measured errors, fitted heights, meshes of sizes between the levels."""

@@ -1,0 +1,1 @@
+"""What details tell: spectra, signatures, shape."""

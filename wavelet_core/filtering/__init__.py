@@ -1,0 +1,1 @@
+"""What is done to details: gains, thresholds, denoising."""

@@ -1,0 +1,220 @@
+"""The sum of a column's damped details that has the least risk, by Stein's unbiased estimate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import block_diag
+from scipy.optimize import lsq_linear
+
+from .._validate import FloatArray
+from ..lifting.linear_map import LinearStep, Transform
+from .noise import local_energy
+from .undecimated import UndecimatedBank
+
+
+class Damping(NamedTuple):
+    """Local energies, in units of the noise, that tell details of terrain from those of noise.
+
+    Details enter as they are and damped at each of ``scales``. ``probed`` are as many energies
+    at which the change of the details is bounded: none, noise and a half, all.
+    """
+
+    scales: tuple[float, ...]
+    probed: tuple[float, ...]
+
+    @property
+    def n_elements(self) -> int:
+        return 1 + len(self.scales)
+
+    def damped(self, details: FloatArray, energy: FloatArray) -> FloatArray:
+        """Return ``(..., n_elements)``: details as they are, and those where energy is small."""
+        damped = [details * np.exp(-((energy / scale) ** 2)) for scale in self.scales]
+        return np.stack([details, *damped], axis=-1)
+
+    def weights_of_changes(self) -> FloatArray:
+        """Return the weights of the elements for a change of 1 at each probed energy alone."""
+        ratio = np.divide.outer(np.asarray(self.probed), np.asarray(self.scales))
+        return np.linalg.inv(np.column_stack([np.ones(len(ratio)), np.exp(-(ratio**2))]))
+
+
+OF_PYRAMIDS = Damping((1.3, 2.0), (0.0, 1.6, np.inf))
+OF_VERTICES = Damping((1.5, 4.0), (0.0, 2.2, np.inf))
+#: Rounds of averaging over rings that a local energy is taken over, for a detail of a pyramid
+#: and for one of a vertex at the finest scale; that of coarser ones is wider.
+PYRAMID_ROUNDS, VERTEX_ROUNDS = 4, 3
+#: Details are at most dropped, and at most boosted by half.
+LEAST_CHANGE, MOST_CHANGE = -1.0, 0.5
+#: How much of the change the pyramids may make, the details of all vertices the rest.
+SHARES_OF_PYRAMIDS = (0.0, 0.25, 0.5, 0.75, 1.0)
+#: Levels that share their weights: single ones gain 0.3 % and take twice as long.
+LEVELS_PER_BAND = 2
+#: Vertices on which the weights are fitted; more do not change them.
+MAX_FITTED = 250_000
+#: Step of the numerical derivative, in standard deviations of the noise.
+PROBE_STEP = 0.01
+#: Vertices times probes for the derivative to be accurate enough, for an average of pyramids and
+#: where each vertex has one detail a scale only.
+PROBED_BY_PYRAMIDS, PROBED_BY_VERTICES = 100_000, 600_000
+MOST_PROBES = 8
+#: Ridge of the weights, relative to the mean energy of a column: it pulls towards no change.
+RIDGE = 1e-7
+
+
+class WeightedSum:
+    """One column, and the sum of its damped details that has the least estimated risk.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n_vertices,)
+    sigma : float
+        Standard deviation of the noise, above 0.
+    bank : UndecimatedBank
+    n_pyramids, levels : int
+        How many pyramids will be taken in, and the most levels that they have.
+    seed : int
+    """
+
+    def __init__(
+        self,
+        values: FloatArray,
+        sigma: float,
+        bank: UndecimatedBank,
+        n_pyramids: int,
+        levels: int,
+        seed: int,
+    ) -> None:
+        generator = np.random.default_rng(seed)
+        n = len(values)
+        self._values = values - values.mean()
+        self._sigma = sigma
+        self._generator = generator
+        self._bank, self._share = bank, 1.0 / n_pyramids
+        self._rows = (
+            slice(None) if n <= MAX_FITTED else np.sort(generator.permutation(n)[:MAX_FITTED])
+        )
+        n_bands = -(-levels // LEVELS_PER_BAND)
+        n_parts = self._bank.n_scales * self._bank.n_parts
+        self._first_of_vertices = n_bands * OF_PYRAMIDS.n_elements
+        self._to_weights = block_diag(
+            *[OF_PYRAMIDS.weights_of_changes()] * n_bands,
+            *[OF_VERTICES.weights_of_changes()] * n_parts,
+        )
+        n_columns = len(self._to_weights)
+        self._columns = np.zeros((min(n, MAX_FITTED), n_columns))
+        self._divergence = np.zeros(n_columns)
+        self._weights = np.zeros(n_columns)
+        self.result = values.copy()
+
+    @property
+    def uses_pyramids(self) -> bool:
+        """Whether the pyramids have any weight."""
+        return bool(self._weights[: self._first_of_vertices].any())
+
+    def fit_vertices(self, tick: Callable[[], None]) -> None:
+        """Take in the details of all vertices, and their divergence; ``tick`` may cancel."""
+        shifted, probes = self._shifted(PROBED_BY_VERTICES)
+        for where, damped in self._damped_by_vertices(shifted):
+            tick()
+            self._take_in(where, damped, probes, 1.0)
+
+    def fit(self, transform: Transform, gains: list[FloatArray]) -> None:
+        """Take in the details of one pyramid, and their divergence."""
+        shifted, probes = self._shifted(PROBED_BY_PYRAMIDS)
+        details = transform.analyse(shifted)[1]
+        damped = [
+            _damped(step, detail, self._sigma * gain)
+            for step, detail, gain in zip(transform.steps, details, gains, strict=True)
+        ]
+        for first in range(0, len(damped), LEVELS_PER_BAND):  # counted from the finest
+            levels = range(len(damped) - 1 - first, len(damped) - 1 - first - LEVELS_PER_BAND, -1)
+            band = transform.synthesise_bands(
+                {k: damped[k].reshape(len(damped[k]), -1) for k in levels if k >= 0}
+            )
+            shape = (*shifted.shape, OF_PYRAMIDS.n_elements)
+            self._take_in(_block(first), band.reshape(shape), probes, self._share)
+
+    def solve(self, finish: bool) -> None:
+        """Find the weights; with ``finish`` the fitted columns cover all vertices: sum them.
+
+        Details are multiplied by 1 + b_0 + b_1 exp(...) + ..., a function of their local energy.
+        Its values at as many energies are the unknowns here, so that they can be kept between
+        dropping and boosting: a sigma that is far too large would otherwise turn details over.
+        Pyramids and vertices both hold all details, so they share the bounds.
+        """
+        share = len(self._columns) / len(self._values)
+        moments = self._to_weights.T @ (self._columns.T @ self._columns) @ self._to_weights
+        pull = -(self._sigma**2) * share * (self._to_weights.T @ self._divergence)
+        size = np.sqrt(np.where(np.diag(moments) > 0, np.diag(moments), 1.0))
+        root = np.linalg.cholesky(moments / np.outer(size, size) + RIDGE * np.eye(len(size)))
+        target = np.linalg.solve(root, pull / size)
+        is_of_pyramids = np.arange(len(size)) < self._first_of_vertices
+        least = np.inf
+        for share_of_pyramids in SHARES_OF_PYRAMIDS:
+            room = np.where(is_of_pyramids, share_of_pyramids, 1.0 - share_of_pyramids) * size
+            is_open = room > 0
+            bounds = (LEAST_CHANGE * room[is_open], MOST_CHANGE * room[is_open])
+            found = lsq_linear(root.T[:, is_open], target, bounds, method="bvls")
+            if found.cost < least:
+                least, changes = found.cost, np.zeros(len(size))
+                changes[is_open] = found.x
+        self._weights = self._to_weights @ (changes / size)
+        if finish:
+            self.result += self._columns @ self._weights
+
+    def add_vertices(self, tick: Callable[[], None]) -> None:
+        """Add the weighted details of all vertices to the result; ``tick`` may cancel."""
+        for where, damped in self._damped_by_vertices(self._values[:, None]):
+            tick()
+            self.result += damped[:, 0] @ self._weights[where]
+
+    def add(self, transform: Transform, gains: list[FloatArray]) -> None:
+        """Add the weighted details of one pyramid to the result."""
+        details = transform.analyse(self._values[:, None])[1]
+        sums = {}
+        for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
+            damped = _damped(step, details[level], self._sigma * gain)[:, 0]
+            sums[level] = damped @ self._weights[_block(len(gains) - 1 - level)][:, None]
+        if sums:
+            self.result += self._share * transform.synthesise_bands(sums)[:, 0]
+
+    def _shifted(self, n_wanted: int) -> tuple[FloatArray, FloatArray]:
+        """Return the column and itself moved a little along random probes, and the probes."""
+        n = len(self._values)
+        shape = (n, max(1, min(MOST_PROBES, n_wanted // n)))
+        probes = self._generator.choice([-1.0, 1.0], size=shape)
+        moved = self._values[:, None] + PROBE_STEP * self._sigma * probes
+        return np.column_stack([self._values, moved]), probes
+
+    def _take_in(self, where: slice, damped: FloatArray, probes: FloatArray, share: float) -> None:
+        """Add to some columns those of the values, ``damped[:, 0]``; the others are the probes'."""
+        self._columns[:, where] += share * damped[self._rows, 0]
+        change = damped[:, 1:] - damped[:, :1]
+        slope = np.einsum("vp,vpk->k", probes, change) / probes.shape[1]
+        self._divergence[where] += share * slope / (PROBE_STEP * self._sigma)
+
+    def _damped_by_vertices(self, columns: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+        """Yield where the weights of each part are, and its ``(n_vertices, k, n_elements)``."""
+        first = self._first_of_vertices
+        for scale, details in enumerate(self._bank.details(columns)):
+            for part in range(self._bank.n_parts):
+                one = details[:, :, part]
+                noise = self._sigma * self._bank.noise[scale][:, part]
+                energy = self._bank.local_energy((one / noise[:, None]) ** 2, VERTEX_ROUNDS + scale)
+                end = first + OF_VERTICES.n_elements
+                yield slice(first, end), OF_VERTICES.damped(one, energy)
+                first = end
+
+
+def _damped(step: LinearStep, details: FloatArray, noise: FloatArray) -> FloatArray:
+    """Return ``(n_odd, k, n_elements)``: each column as it is, and damped where it is strong."""
+    energy = local_energy(step, (details / noise[:, None]) ** 2, PYRAMID_ROUNDS)
+    return OF_PYRAMIDS.damped(details, energy)
+
+
+def _block(levels_above: int) -> slice:
+    """Return the columns of a level, by its distance from the finest: so all transforms agree."""
+    first = levels_above // LEVELS_PER_BAND * OF_PYRAMIDS.n_elements
+    return slice(first, first + OF_PYRAMIDS.n_elements)

@@ -1,0 +1,227 @@
+"""Details of every vertex at once, by scale and direction: nothing is removed, so all have them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array, diags, identity  # the array forms are not in SciPy 1.10
+
+from .._validate import FloatArray
+from ..mesh.triangle_mesh import TriangleMesh
+
+IndexArray = NDArray[np.int64]
+
+#: Width of the smoother's weights, in mean distances of a ring.
+SMOOTHER_WIDTH = 0.7
+#: Directions in plan along which curvature is told apart: three numbers make a second derivative.
+N_DIRECTIONS = 3
+#: Meshes below this many vertices tell no directions: they would fit weights to noise.
+LEAST_FOR_DIRECTIONS = 3_000
+#: Ridges of the local fits, relative to their sums of squares. That of the plane only keeps
+#: collinear rings solvable; that of the curvature bounds it where a ring hardly tells it.
+PLANE_RIDGE, CURVATURE_RIDGE = 1e-9, 1e-3
+#: Rounds of averaging over rings that a variance of noise is pooled over, at the finest scale.
+POOL_ROUNDS = 2
+#: Least variance of noise at a vertex, relative to the mean of all.
+LEAST_VARIANCE = 1e-3
+#: Each scale but the first smooths twice as often as the one before.
+ROUNDS_OF_SCALE = (1, 1, 2, 4, 8, 16, 32, 64, 128)
+
+
+@dataclass(frozen=True, slots=True)
+class UndecimatedBank:
+    r"""Filters that split columns on a mesh by scale and direction.
+
+    Attributes
+    ----------
+    smoother : csr_array, shape (n_vertices, n_vertices)
+        Value at each vertex of the plane fitted to it and its ring.
+    curvatures : tuple of csr_array, each (n_vertices, n_vertices)
+        Second differences along directions equally apart.
+    averaging : csr_array, shape (n_vertices, n_vertices)
+        Mean over a vertex and its ring.
+    strengths : ndarray, shape (n_scales,)
+        What the curvatures of a scale are multiplied by to make up most of its details.
+    noise : tuple of ndarray, each (n_vertices, n_parts)
+        Standard deviation that white noise of 1 leaves in the details of each scale.
+
+    Notes
+    -----
+    The columns are smoothed 1, 2, 4, 8, ... times; the details of a scale are what is lost from
+    one to the next, so that all details and the last smooth columns add up to the input. The
+    smoother reproduces planes, as ``prediction="plane"`` does: a slope has no details. They are
+    then split into parts along directions, which follow ridges and banks, and the rest. It is the
+    lifting of all partitions at once, which the average over many random ones tends to, and the
+    counterpart on a mesh of the stationary transform of images.
+
+    References
+    ----------
+    J.-L. Starck, J. Fadili, F. Murtagh: The undecimated wavelet decomposition and its
+    reconstruction. IEEE Transactions on Image Processing 16, 2007.
+    """
+
+    smoother: csr_array
+    curvatures: tuple[csr_array, ...]
+    averaging: csr_array
+    strengths: FloatArray
+    noise: tuple[FloatArray, ...]
+
+    @classmethod
+    def from_mesh(
+        cls,
+        mesh: TriangleMesh,
+        n_scales: int,
+        noise: FloatArray,
+        locked: ArrayLike | None = None,
+    ) -> UndecimatedBank:
+        """Return the bank of a mesh.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            Only x, y and the faces are looked at.
+        n_scales : int
+        noise : ndarray, shape (n_vertices, k)
+            White noise of standard deviation 1, to measure what arrives at each scale.
+        locked : array_like of bool, shape (n_vertices,), optional
+            Vertices without details.
+        """
+        rows, columns, offsets = _rings(mesh)
+        is_free = np.ones(mesh.n_vertices)
+        if locked is not None:
+            is_free -= np.asarray(locked, dtype=bool)
+        smoother = _smoother(rows, columns, offsets, mesh.n_vertices)
+        averaging = csr_array(
+            (np.ones(len(rows)), (rows, columns)), shape=(mesh.n_vertices, mesh.n_vertices)
+        )
+        bank = cls(
+            csr_array(diags(is_free) @ smoother + diags(1.0 - is_free)),
+            tuple(csr_array(diags(is_free) @ one) for one in _curvatures(rows, columns, offsets))
+            if mesh.n_vertices >= LEAST_FOR_DIRECTIONS
+            else (),
+            csr_array(diags(1.0 / averaging.sum(axis=1)) @ averaging),
+            np.ones(min(n_scales, len(ROUNDS_OF_SCALE))),
+            (),
+        )
+        return bank._measured(noise)
+
+    @property
+    def n_scales(self) -> int:
+        """How many scales there are."""
+        return len(self.strengths)
+
+    @property
+    def n_parts(self) -> int:
+        """Into how many parts the details of a scale are split."""
+        return len(self.curvatures) + 1
+
+    def details(self, columns: FloatArray) -> Iterator[FloatArray]:
+        """Yield the details of each scale from the finest, ``(n_vertices, k, n_parts)``."""
+        for scale, strength in enumerate(self.strengths):
+            details, along, columns = self._split(columns, scale)
+            yield _parts(details, along, strength)
+
+    def local_energy(self, energy: FloatArray, rounds: int) -> FloatArray:
+        """Return values ``(n_vertices, ...)`` averaged over their neighbourhood."""
+        shape = energy.shape
+        energy = energy.reshape(shape[0], -1)
+        for _ in range(rounds):
+            energy = self.averaging @ energy
+        return energy.reshape(shape)
+
+    def _split(
+        self, columns: FloatArray, scale: int
+    ) -> tuple[FloatArray, list[FloatArray], FloatArray]:
+        smooth = columns
+        for _ in range(ROUNDS_OF_SCALE[scale]):
+            smooth = self.smoother @ smooth
+        return columns - smooth, [one @ columns for one in self.curvatures], smooth
+
+    def _measured(self, noise: FloatArray) -> UndecimatedBank:
+        """Return the bank with the strengths and deviations that noise shows."""
+        strengths, deviations, columns = np.ones(self.n_scales), [], noise
+        for scale in range(self.n_scales):
+            details, along, columns = self._split(columns, scale)
+            if along:
+                together = sum(along[1:], start=along[0])
+                most = float(np.sum(together**2))
+                strengths[scale] = float(np.sum(details * together)) / most if most > 0 else 0.0
+            squares = np.mean(_parts(details, along, strengths[scale]) ** 2, axis=1)
+            variance = self.local_energy(squares, POOL_ROUNDS + scale)
+            floor = LEAST_VARIANCE * variance.mean(axis=0)
+            deviations.append(np.sqrt(variance + np.where(floor > 0, floor, 1.0)))
+        return replace(self, strengths=strengths, noise=tuple(deviations))
+
+
+def _parts(details: FloatArray, along: list[FloatArray], strength: float) -> FloatArray:
+    """Return the details along each direction and the rest, ``(n_vertices, k, n_parts)``."""
+    parts = [strength * one for one in along]
+    return np.stack([*parts, details - sum(parts)], axis=2)
+
+
+def _rings(mesh: TriangleMesh) -> tuple[IndexArray, IndexArray, FloatArray]:
+    """Return vertex, neighbour and offset in mean ring distances; every vertex is its own too."""
+    n = mesh.n_vertices
+    a, b, c = mesh.faces.T
+    start, end = np.concatenate([a, b, c, b, c, a]), np.concatenate([b, c, a, a, b, c])
+    pattern = csr_array((np.ones(len(start)), (start, end)), shape=(n, n))
+    pattern = csr_array(pattern + identity(n))
+    pattern.sort_indices()
+    rows = np.repeat(np.arange(n), np.diff(pattern.indptr))
+    columns = pattern.indices.astype(np.int64)
+    offsets = mesh.vertices[columns, :2] - mesh.vertices[rows, :2]
+    total = np.bincount(rows, np.hypot(*offsets.T), n)
+    mean = total / np.maximum(np.bincount(rows, minlength=n) - 1, 1)
+    return rows, columns, offsets / np.where(mean > 0, mean, 1.0)[rows, None]
+
+
+def _smoother(rows: IndexArray, columns: IndexArray, offsets: FloatArray, n: int) -> csr_array:
+    """Return the value at each vertex of a plane fitted to it and its ring, by least squares."""
+    weights = np.exp(-0.5 * np.sum(offsets**2, axis=1) / SMOOTHER_WIDTH**2)
+    terms = np.column_stack([np.ones(len(rows)), offsets])
+    normal = _normal_equations(rows, weights, terms, n)
+    normal[:, [1, 2], [1, 2]] += PLANE_RIDGE * normal[:, :1, 0]
+    value = np.linalg.inv(normal)[:, 0]
+    entries = np.einsum("ek,ek->e", value[rows], terms) * weights
+    return csr_array((entries, (rows, columns)), shape=(n, n))
+
+
+def _curvatures(rows: IndexArray, columns: IndexArray, offsets: FloatArray) -> list[csr_array]:
+    """Return half the second derivatives along directions, of quadratics through each vertex."""
+    n = int(rows[-1]) + 1
+    dx, dy = offsets.T
+    weights = np.where(rows == columns, 0.0, 1.0 / np.maximum(np.hypot(dx, dy), 0.3))
+    terms = np.column_stack([dx, dy, dx**2, dx * dy, dy**2])
+    normal = _normal_equations(rows, weights, terms, n)
+    size = np.maximum(np.trace(normal, axis1=1, axis2=2), 1e-12)[:, None]
+    # No ridge to speak of on the slope: a plane must have no curvature, however steep.
+    normal[:, [0, 1], [0, 1]] += PLANE_RIDGE * size
+    normal[:, [2, 3, 4], [2, 3, 4]] += CURVATURE_RIDGE * size
+    inverse = np.linalg.inv(normal)
+    second = np.stack(
+        [np.einsum("ek,ek->e", inverse[rows, k], terms) * weights for k in (2, 3, 4)], axis=1
+    )
+    found = []
+    for angle in np.pi / N_DIRECTIONS * np.arange(N_DIRECTIONS):
+        east, north = np.cos(angle), np.sin(angle)
+        entries = second @ [east**2, east * north, north**2]
+        entries = np.where(rows == columns, -np.bincount(rows, entries, n)[rows], entries)
+        found.append(csr_array((entries, (rows, columns)), shape=(n, n)))
+    return found
+
+
+def _normal_equations(
+    rows: IndexArray, weights: FloatArray, terms: FloatArray, n: int
+) -> FloatArray:
+    """Return the sums over each ring of the products of terms, ``(n, n_terms, n_terms)``."""
+    k = terms.shape[1]
+    sums = np.empty((n, k, k))
+    for a in range(k):
+        for b in range(a, k):
+            sums[:, a, b] = sums[:, b, a] = np.bincount(
+                rows, weights * terms[:, a] * terms[:, b], n
+            )
+    return sums

@@ -1,0 +1,389 @@
+"""From a mesh to its pyramid: cost, partition, remesh, predict, update (Algorithm 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._kernels._jit import announce_fallback
+from .._validate import FloatArray, frozen
+from ..errors import Cancelled, MeshError, OptionError
+from ..mesh.collapse import even_positions, merge_map, merged_faces
+from ..mesh.connectivity import build_connectivity
+from ..mesh.location import surface_errors
+from ..mesh.triangle_mesh import TriangleMesh
+from ..partition._mutable_level import SurfaceLevel
+from ..partition.error_guided import SurfaceRules, analyse_surface
+from ..partition.orderings import (
+    ColouringPartition,
+    LevelView,
+    Partition,
+    QuadricPartition,
+    RandomPartition,
+    SurfacePartition,
+)
+from .options import AnalysisOptions, resolve_options
+from .prediction import Removal, predict
+from .pyramid import Pyramid
+from .step import Step, analyse_level
+
+Progress = Callable[[float], bool | None]
+
+#: Share of the vertices that one level is expected to keep, for the progress bar alone.
+EXPECTED_KEPT = 0.73
+#: Attributes of weight 0 still count this little, so that they can be lifted beside z.
+LEAST_WEIGHT = 1e-9
+
+
+def analyse(
+    mesh: TriangleMesh,
+    levels: int | None = None,
+    partition: str | None = None,
+    prediction: str | None = None,
+    update: str | None = None,
+    signal: str = "z",
+    locked: ArrayLike | None = None,
+    target_vertices: int | None = None,
+    max_error: float | None = None,
+    max_rms: float | None = None,
+    progress: Progress | None = None,
+    *,
+    attribute_weights: Sequence[float] | None = None,
+    bending_weight: float = 1.0,
+    seed: int = 0,
+    norm: str | None = None,
+    removal_fraction: float | None = None,
+) -> Pyramid:
+    """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        A manifold surface, with or without outline and holes.
+    levels : int, optional
+        The most levels to build. By default 12, or, with another stop rule, as many as it takes.
+    partition : {"surface", "quadric", "colouring", "random"}, optional
+        Which vertices go: those that raise the vertical errors at all input vertices least; by
+        the paper's cost; or regardless of any, in the order of their index or a random one. By
+        default ``"surface"``; with a prediction of the paper or ``signal="xyz"``, the paper's
+        ``"quadric"``.
+    prediction : str, optional
+        How an odd vertex is estimated from its neighbours: ``"uniform"``, ``"cotangent"``,
+        ``"geometric"``, ``"nnls"``, ``"least_squares"``, ``"barycentric"`` or ``"plane"``; by
+        default ``"barycentric"`` with ``partition="surface"``, else ``"geometric"``. The paper's
+        short names (``"GL"``) and joined designs (``"GLMN"``) are accepted.
+    update : {"minimum_norm", "martinez_ortega", "one_ring_mean", "none"}, optional
+        How the details are handed on to the even vertices. By default ``"minimum_norm"``; with
+        ``partition="surface"`` and ``norm="max"`` it is ``"none"``.
+    signal : {"z", "xyz"}
+        Lift elevation and attributes and keep x and y (every level is a valid TIN), or lift all
+        coordinates, as the paper does (a coarse level may then have faces flipped in plan).
+    locked : array_like of bool, shape (n_vertices,), optional
+        Vertices that are never removed and never changed.
+    target_vertices : int, optional
+        Stop at this number of vertices; the last level removes only what is still due.
+    max_error, max_rms : float, optional
+        Largest or root mean square vertical distance from all input vertices, in the unit of z,
+        that the coarsest level may have; with ``partition="surface"`` it is used up as far as
+        whole removals allow, with the others the analysis stops before the level that breaks it.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+    attribute_weights : sequence of float, optional
+        Weight of each attribute, against the coordinates, in cost and prediction; 1 by default.
+    bending_weight : float
+        Weight of the bending energy in the cost of ``partition="quadric"``.
+    seed : int
+        Of the order of ``partition="random"``.
+    norm : {"rms", "max"}, optional
+        What ``partition="surface"`` keeps small: the mean square of the vertical errors, or the
+        largest. By default ``"max"`` if ``max_error`` is given, else ``"rms"``.
+    removal_fraction : float, optional
+        Largest share of the vertices that a level of ``partition="surface"`` may take; by default
+        0.25, and 0.1 for ``norm="max"`` with ``target_vertices``. Twice that share while more than
+        twice ``target_vertices`` are left.
+
+    Returns
+    -------
+    Pyramid
+        With as many levels as the rules allow; none where no vertex can be removed.
+
+    Raises
+    ------
+    MeshError
+        The mesh is no manifold, or, with ``signal="z"``, has a face that is not
+        counter-clockwise in plan.
+    OptionError
+        An option that is not served.
+    Cancelled
+        ``progress`` returned False.
+
+    Notes
+    -----
+    For cost and prediction the columns are centred and divided by their range. The result is the
+    same, to the byte, for any number of threads.
+
+    Examples
+    --------
+    >>> from wavelet_core import analyse, synthetic
+    >>> pyramid = analyse(synthetic.hills(20, 30), levels=3)
+    >>> pyramid.n_levels
+    3
+    """
+    options = resolve_options(
+        n_attributes=mesh.attributes.shape[1],
+        levels=levels,
+        partition=partition,
+        prediction=prediction,
+        update=update,
+        signal=signal,
+        target_vertices=target_vertices,
+        max_error=max_error,
+        max_rms=max_rms,
+        attribute_weights=attribute_weights,
+        bending_weight=bending_weight,
+        seed=seed,
+        norm=norm,
+        removal_fraction=removal_fraction,
+    )
+    announce_fallback(mesh.n_vertices)
+    return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
+
+
+class _Analysis:
+    """The state that one analysis carries from level to level."""
+
+    def __init__(
+        self,
+        mesh: TriangleMesh,
+        options: AnalysisOptions,
+        locked: NDArray[np.bool_],
+        progress: Progress | None,
+    ) -> None:
+        self._mesh = mesh
+        self._options = options
+        self._progress = progress
+        self._in_plan = options.signal == "z"
+        if self._in_plan:
+            _require_upright(mesh)
+        self._all_locked = locked
+        self._faces = mesh.faces.astype(np.int32)
+        columns = [mesh.vertices[:, 2:] if self._in_plan else mesh.vertices, mesh.attributes]
+        self._coefficients = np.ascontiguousarray(np.hstack(columns))
+        self._horizontal = mesh.vertices[:, :2] if self._in_plan else None
+        self._locked = locked
+        self._integrals = np.ones(mesh.n_vertices)
+        self._scale = _Normalisation(mesh, options)
+
+    def run(self) -> Pyramid:
+        """Take steps until a rule says stop."""
+        self._report(0.0)
+        if self._options.partition == "surface":
+            build_connectivity(self._faces, self._mesh.n_vertices)  # refuses what is no manifold
+            self._report(0.0)
+        steps = self._surface_steps() if self._is_surface_lifting() else self._steps()
+        self._report(1.0)
+        return Pyramid(
+            faces=frozen(self._mesh.faces.astype(np.int32)),
+            horizontal=None if not self._in_plan else frozen(self._mesh.vertices[:, :2]),
+            coarse=frozen(self._coefficients),
+            steps=tuple(reversed(steps)),
+            channels=(("z",) if self._in_plan else ("x", "y", "z")) + self._mesh.attribute_names,
+            signal=self._options.signal,  # type: ignore[arg-type]
+            update=self._options.update,
+            locked=frozen(self._all_locked) if self._all_locked.any() else None,
+            parameters=self._options.as_dict(),
+        )
+
+    def _steps(self) -> list[Step]:
+        """Partition, predict and update, each by its own rule."""
+        self._partition = self._make_partition()
+        steps: list[Step] = []
+        while len(steps) < self._options.levels:
+            step = self._step()
+            if step is None:
+                break
+            steps.append(step)
+        return steps
+
+    def _is_surface_lifting(self) -> bool:
+        """Whether partition, prediction and update are those that know of each other."""
+        options = self._options
+        return (
+            options.partition == "surface"
+            and options.prediction == "barycentric"
+            and options.update in ("minimum_norm", "none")
+            and self._in_plan
+        )
+
+    def _surface_steps(self) -> list[Step]:
+        """Keep the surface: partition, prediction and update in one, see `surface`."""
+        options = self._options
+        rules = SurfaceRules(
+            levels=options.levels,
+            norm=options.norm,
+            with_update=options.update == "minimum_norm",
+            removal_fraction=options.removal_fraction,
+            target_vertices=options.target_vertices or 0,
+            max_error=np.inf if options.max_error is None else options.max_error,
+            max_rms=np.inf if options.max_rms is None else options.max_rms,
+        )
+        result = analyse_surface(
+            self._mesh.vertices[:, :2],
+            self._coefficients,
+            self._faces,
+            self._locked,
+            self._scale.height_weights(),
+            rules,
+            self._report_size,
+        )
+        self._coefficients = result.coarse
+        return result.steps
+
+    def _make_partition(self) -> Partition:
+        options = self._options
+        if options.partition == "quadric":
+            return QuadricPartition(options.bending_weight)
+        if options.partition == "random":
+            return RandomPartition(options.seed)
+        if options.partition == "colouring":
+            return ColouringPartition()
+        _require_upright(self._mesh)
+        columns = np.hstack([self._mesh.vertices[:, 2:], self._mesh.attributes])
+        heights = columns * self._scale.height_weights()
+        plan = self._mesh.vertices[:, :2]
+        level = SurfaceLevel(plan, heights, self._faces, self._locked, with_update=False)
+        return SurfacePartition(level, options.norm, options.removal_fraction)
+
+    def _step(self) -> Step | None:
+        """Analyse one level; None, and the level unchanged, where a rule forbids it."""
+        n_vertices = len(self._coefficients)
+        max_odd = n_vertices - (self._options.target_vertices or 0)
+        if max_odd <= 0:
+            return None
+        connectivity = build_connectivity(self._faces, n_vertices)
+        self._report()
+        points, plan = self._scale.points(self._coefficients, self._horizontal)
+        view = LevelView(self._faces, points, plan, connectivity, self._locked, self._in_plan)
+        split = self._partition.split(view, max_odd)
+        if len(split.odd) == 0:
+            return None
+        self._report()
+        even = even_positions(split.odd, n_vertices)
+        removal = Removal(points, plan, connectivity, *split, even, self._locked)
+        filter_matrix = predict(self._options.prediction, removal)
+        coarse, details, integrals = analyse_level(
+            self._coefficients,
+            split.odd,
+            even,
+            filter_matrix,
+            self._options.update,
+            self._integrals,
+            self._locked,
+        )
+        faces = merged_faces(self._faces, merge_map(*split, n_vertices))
+        if self._breaks_a_tolerance(coarse, even, faces):
+            return None
+        self._partition.descend(split, even, filter_matrix)
+        self._faces, self._coefficients, self._integrals = faces, coarse, integrals
+        self._locked = self._locked[even]
+        if self._horizontal is not None:
+            self._horizontal = self._horizontal[even]
+        self._report()
+        return Step(
+            frozen(split.odd),
+            frozen(split.target),
+            frozen(filter_matrix.indptr.astype(np.int64)),
+            frozen(filter_matrix.indices.astype(np.int32)),
+            frozen(filter_matrix.data),
+            frozen(details),
+        )
+
+    def _breaks_a_tolerance(
+        self, coarse: FloatArray, even: NDArray[np.int32], faces: NDArray[np.int32]
+    ) -> bool:
+        max_error, max_rms = self._options.max_error, self._options.max_rms
+        if max_error is None and max_rms is None:
+            return False
+        if self._horizontal is None:
+            vertices = coarse[:, :3]
+        else:
+            vertices = np.column_stack([self._horizontal[even], coarse[:, 0]])
+        errors = surface_errors(
+            TriangleMesh._trusted(vertices, faces, np.empty((len(even), 0)), ()),
+            self._mesh.vertices,
+        )
+        errors = errors[np.isfinite(errors)]
+        if max_error is not None and np.abs(errors).max(initial=0.0) > max_error:
+            return True
+        return max_rms is not None and bool(np.sqrt(np.mean(errors**2)) > max_rms)
+
+    def _report_size(self, n_vertices: int) -> None:
+        self._report(n_vertices=n_vertices)
+
+    def _report(self, fraction: float | None = None, n_vertices: int | None = None) -> None:
+        if self._progress is None:
+            return
+        n_input = self._mesh.n_vertices
+        if fraction is None:
+            expected = self._options.target_vertices or n_input * EXPECTED_KEPT ** min(
+                self._options.levels, 40
+            )
+            gone = n_input - (len(self._coefficients) if n_vertices is None else n_vertices)
+            fraction = min(gone / max(n_input - expected, 1.0), 0.99)
+        if self._progress(fraction) is False:
+            raise Cancelled("the analysis was cancelled; nothing was kept.")
+
+
+class _Normalisation:
+    """Centre and range of the input's columns, by which cost and prediction measure."""
+
+    def __init__(self, mesh: TriangleMesh, options: AnalysisOptions) -> None:
+        columns = [*mesh.vertices.T, *mesh.attributes.T]
+        low = np.array([column.min() for column in columns])
+        extent = np.array([np.ptp(column) for column in columns])
+        self._centre = low + extent / 2
+        weights = np.array((1.0, 1.0, 1.0, *options.attribute_weights))
+        self._factor = weights / np.where(extent > 0, extent, 1.0)
+        height = extent[2] if extent[2] > 0 else 1.0
+        self._height_weights = np.maximum(self._factor[2:], LEAST_WEIGHT) * height
+        self._height_weights[0] = 1.0
+
+    def height_weights(self) -> FloatArray:
+        """Return what errors of z and of each attribute count for against errors of z."""
+        return self._height_weights
+
+    def points(
+        self, coefficients: FloatArray, horizontal: FloatArray | None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return normalised x, y, z and attributes; and x, y centred only."""
+        if horizontal is not None:
+            coefficients = np.hstack([horizontal, coefficients])
+        points = coefficients - self._centre
+        plan = points[:, :2].copy()
+        points *= self._factor
+        return points, plan
+
+
+def _locked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.bool_]:
+    if locked is None:
+        return np.zeros(mesh.n_vertices, dtype=bool)
+    mask = np.array(locked)
+    if mask.shape != (mesh.n_vertices,) or mask.dtype != bool:
+        raise OptionError(
+            f"locked has shape {mask.shape} and dtype {mask.dtype}; give one bool for each of "
+            f"{mesh.n_vertices} vertices."
+        )
+    return mask
+
+
+def _require_upright(mesh: TriangleMesh) -> None:
+    areas = mesh.plan_areas
+    if len(areas) and areas.min() <= 0:
+        face = int(np.argmax(areas <= 0))
+        raise MeshError(
+            f"face {face} {mesh.faces[face].tolist()} is flipped or flat in plan (area "
+            f"{areas[face]:g}), so the mesh is no TIN; turn or remove it, or use signal='xyz'.",
+            face,
+        )

@@ -1,0 +1,333 @@
+"""The reversible pyramid: a coarse mesh, and the details of every level above it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._validate import FloatArray, IntArray, frozen
+from ..errors import PyramidError
+from ..mesh.collapse import even_positions, merge_map, merged_faces
+from ..mesh.triangle_mesh import TriangleMesh
+from ._checks import check_parts
+from .step import FilterPair, Step, split_integrals, synthesise_level
+from .update import update_filter
+
+
+@dataclass(frozen=True, slots=True)
+class Detail:
+    """The detail layer of one step, one row for each vertex that it removed.
+
+    Attributes
+    ----------
+    vertex_ids : ndarray of int64, shape (n_odd,)
+        Ids of the removed vertices in the input mesh.
+    positions : ndarray, shape (n_odd, 3)
+        x, y, z of the removed vertices on the finer level.
+    vectors : ndarray, shape (n_odd, n_channels)
+        Detail vectors, in the units of the input.
+    magnitude : ndarray, shape (n_odd,)
+        Euclidean norm of the vectors.
+    """
+
+    vertex_ids: IntArray
+    positions: FloatArray
+    vectors: FloatArray
+    magnitude: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Pyramid:
+    """A wavelet decomposition of a mesh: level 0 is the coarsest, level ``n_levels`` the input.
+
+    Attributes
+    ----------
+    faces : ndarray of int32, shape (n_faces, 3)
+        Faces of the input. Those of all other levels follow from the collapses.
+    horizontal : ndarray, shape (n_vertices, 2), or None
+        x and y of the input with signal "z", where they do not change; None with "xyz".
+    coarse : ndarray, shape (n_coarse, n_channels)
+        Scaling coefficients of level 0.
+    steps : tuple of Step
+        ``steps[level]`` leads from level + 1 to level.
+    channels : tuple of str
+        Names of the lifted columns.
+    signal : {"z", "xyz"}
+    update : str
+        Update filter.
+    locked : ndarray of bool, shape (n_vertices,), or None
+    parameters : dict
+        Every option of the analysis, resolved.
+    """
+
+    faces: NDArray[np.int32]
+    horizontal: FloatArray | None
+    coarse: FloatArray
+    steps: tuple[Step, ...]
+    channels: tuple[str, ...]
+    signal: Literal["z", "xyz"]
+    update: str
+    locked: NDArray[np.bool_] | None = None
+    parameters: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def from_parts(
+        cls,
+        *,
+        faces: NDArray,
+        horizontal: FloatArray | None,
+        coarse: FloatArray,
+        steps: Sequence[Step],
+        channels: Sequence[str],
+        signal: str,
+        update: str,
+        locked: NDArray | None = None,
+        parameters: Mapping[str, Any] | None = None,
+    ) -> Pyramid:
+        """Return the pyramid of parts that nobody has checked yet, such as those of a file.
+
+        Raises
+        ------
+        PyramidError
+            Shapes, index ranges or values that no pyramid can have.
+        """
+        check_parts(faces, horizontal, coarse, steps, channels, signal, update, locked)
+        return cls(
+            faces=frozen(np.asarray(faces, dtype=np.int32)),
+            horizontal=None if horizontal is None else frozen(np.asarray(horizontal, np.float64)),
+            coarse=frozen(np.asarray(coarse, dtype=np.float64)),
+            steps=tuple(steps),
+            channels=tuple(channels),
+            signal=signal,  # type: ignore[arg-type]
+            update=update,
+            locked=None if locked is None else frozen(np.asarray(locked, dtype=bool)),
+            parameters=dict(parameters or {}),
+        )
+
+    @property
+    def n_levels(self) -> int:
+        """Number of steps L; the levels run from 0 to L."""
+        return len(self.steps)
+
+    @property
+    def attribute_names(self) -> tuple[str, ...]:
+        """Names of the attributes among the channels."""
+        return self.channels[1:] if self.signal == "z" else self.channels[3:]
+
+    def n_vertices(self, level: int) -> int:
+        """Return the number of vertices of a level."""
+        self._require_level(level)
+        return len(self.coarse) + sum(step.n_odd for step in self.steps[:level])
+
+    def n_faces(self, level: int) -> int:
+        """Return the number of faces of a level."""
+        self._require_level(level)
+        return len(self._faces_of(level))
+
+    def vertex_ids(self, level: int) -> IntArray:
+        """Return the ids, in the input, of the vertices of a level; ascending."""
+        self._require_level(level)
+        return self._ids_by_level(level)[level].astype(np.int64)
+
+    def mesh(self, level: int) -> TriangleMesh:
+        """Return the mesh of a level, synthesised from the coarsest one.
+
+        Raises
+        ------
+        PyramidError
+            A level that the pyramid does not have.
+        """
+        self._require_level(level)
+        ids = self._ids_by_level(0)
+        by_level = (c for k, c in self._coefficients(ids) if k == level)
+        return self._assemble(next(by_level), ids[level], self._faces_of(level))
+
+    def synthesise(self, level: int | None = None) -> TriangleMesh:
+        """Return the mesh of a level; by default of the finest, which equals the input."""
+        return self.mesh(self.n_levels if level is None else level)
+
+    def meshes(self, start: int = 0) -> Iterator[tuple[int, TriangleMesh]]:
+        """Yield ``(level, mesh)`` from level ``start`` up to the finest, in one synthesis pass."""
+        self._require_level(start)
+        ids = self._ids_by_level(0)
+        faces = self._faces_by_level(start)
+        for level, coefficients in self._coefficients(ids):
+            if level >= start:
+                yield level, self._assemble(coefficients, ids[level], faces.pop())
+
+    def detail(self, level: int) -> Detail:
+        """Return the detail layer of the step from ``level + 1`` to ``level``."""
+        self._require_step(level)
+        return next(detail for k, detail in self.details() if k == level)
+
+    def details(self) -> Iterator[tuple[int, Detail]]:
+        """Yield ``(level, detail layer)`` from level 0 up, in one synthesis pass."""
+        ids = self._ids_by_level(0)
+        for finer, coefficients in self._coefficients(ids):
+            if finer > 0:
+                step = self.steps[finer - 1]
+                yield finer - 1, self._detail_layer(step, ids[finer], coefficients)
+
+    def _detail_layer(self, step: Step, ids: NDArray[np.int32], coefficients: FloatArray) -> Detail:
+        vertex_ids = ids[step.odd].astype(np.int64)
+        if self.horizontal is None:
+            positions = coefficients[step.odd, :3]
+        else:
+            positions = np.column_stack([self.horizontal[vertex_ids], coefficients[step.odd, 0]])
+        magnitude = np.linalg.norm(step.details, axis=1)
+        return Detail(
+            frozen(vertex_ids), frozen(positions), frozen(step.details), frozen(magnitude)
+        )
+
+    def filters(self, level: int) -> FilterPair:
+        """Return the prediction and update filters of the step from ``level + 1`` to ``level``."""
+        self._require_step(level)
+        step = self.steps[level]
+        ids = self._ids_by_level(level)
+        integrals = self._integrals_by_level(level + 1)[level + 1]
+        even = even_positions(step.odd, len(ids[level + 1]))
+        prediction = step.prediction(len(even))
+        odd_integrals, coarser = split_integrals(integrals, step.odd, even, prediction)
+        update = update_filter(
+            self.update, prediction, odd_integrals, coarser, self._locked(ids[level])
+        )
+        return FilterPair(prediction, update, step.odd, even)
+
+    def integrals(self, level: int) -> FloatArray:
+        """Return the integrals ζ of the scaling functions of a level (Eq. 47; 1 on the input)."""
+        self._require_level(level)
+        return self._integrals_by_level(level)[level]
+
+    def with_gains(
+        self,
+        gains: Mapping[int, float | Sequence[float]],
+        coarse: float | Sequence[float] = 1.0,
+    ) -> Pyramid:
+        """Return the pyramid with the details of each level multiplied.
+
+        Parameters
+        ----------
+        gains : mapping of int to float or sequence of float
+            By level, one number or one for each channel; levels not named keep 1.
+        coarse : float or sequence of float
+            Gain of the coarsest level's coefficients.
+
+        See Also
+        --------
+        wavelet_core.filtering.gains.scaled, wavelet_core.filtering.gains.band_gains
+        """
+        from ..filtering.gains import scaled
+
+        return scaled(self, gains, coarse)
+
+    def denoised(self, sigma: float | None = None, **options: Any) -> Pyramid:
+        """Return the pyramid with thresholded details.
+
+        Parameters
+        ----------
+        sigma : float, optional
+            Standard deviation of the noise; by default estimated from the finest level.
+        **options
+            ``method``, ``strength``, ``local``, ``by_level`` and ``channels`` of
+            :func:`wavelet_core.filtering.thresholds.denoised`, which says what they mean.
+        """
+        from ..filtering.thresholds import denoised
+
+        return denoised(self, sigma, **options)
+
+    def with_parts(self, **changes: Any) -> Pyramid:
+        """Return a pyramid of the same topology with other coarse coefficients or steps."""
+        return replace(self, **changes)
+
+    # -- walks through the levels ----------------------------------------------------------------
+
+    def _require_level(self, level: int) -> None:
+        if not 0 <= level <= self.n_levels:
+            raise PyramidError(f"there is no level {level}; the levels are 0 to {self.n_levels}.")
+
+    def _require_step(self, level: int) -> None:
+        if not 0 <= level < self.n_levels:
+            raise PyramidError(
+                f"there are no details at level {level}; they are at 0 to {self.n_levels - 1}."
+            )
+
+    def _locked(self, ids: NDArray) -> NDArray[np.bool_]:
+        if self.locked is None:
+            return np.zeros(len(ids), dtype=bool)
+        return self.locked[ids]
+
+    def _ids_by_level(self, lowest: int) -> dict[int, NDArray[np.int32]]:
+        """Ids in the input of the vertices of each level from the finest down to ``lowest``."""
+        current = np.arange(self.n_vertices(self.n_levels), dtype=np.int32)
+        ids = {self.n_levels: current}
+        for level in range(self.n_levels - 1, lowest - 1, -1):
+            current = current[even_positions(self.steps[level].odd, len(current))]
+            ids[level] = current
+        return ids
+
+    def _faces_by_level(self, lowest: int) -> list[NDArray[np.int32]]:
+        """Faces of each level, finest first, down to ``lowest``."""
+        faces, n_vertices = self.faces, self.n_vertices(self.n_levels)
+        by_level = [faces]
+        for level in range(self.n_levels - 1, lowest - 1, -1):
+            step = self.steps[level]
+            faces = merged_faces(faces, merge_map(step.odd, step.target, n_vertices))
+            n_vertices -= step.n_odd
+            by_level.append(faces)
+        return by_level
+
+    def _faces_of(self, level: int) -> NDArray[np.int32]:
+        """Faces of one level, without those between."""
+        n_vertices = self.n_vertices(level)
+        position = np.arange(n_vertices, dtype=np.int32)
+        for step in self.steps[level:]:
+            n_vertices += step.n_odd
+            position = position[merge_map(step.odd, step.target, n_vertices)]
+        return merged_faces(self.faces, position)
+
+    def _integrals_by_level(self, lowest: int) -> dict[int, FloatArray]:
+        integrals = np.ones(self.n_vertices(self.n_levels))
+        by_level = {self.n_levels: integrals}
+        for level in range(self.n_levels - 1, lowest - 1, -1):
+            step = self.steps[level]
+            even = even_positions(step.odd, len(integrals))
+            prediction = step.prediction(len(even))
+            integrals = split_integrals(integrals, step.odd, even, prediction)[1]
+            by_level[level] = integrals
+        return by_level
+
+    def _coefficients(self, ids: dict[int, NDArray[np.int32]]) -> Iterator[tuple[int, FloatArray]]:
+        """Scaling coefficients from level 0 up."""
+        coefficients = self.coarse
+        yield 0, coefficients
+        integrals = self._integrals_by_level(0) if self.update == "minimum_norm" else {}
+        for level, step in enumerate(self.steps):
+            n_fine = len(ids[level + 1])
+            even = even_positions(step.odd, n_fine)
+            coefficients = synthesise_level(
+                coefficients,
+                step.details,
+                step.odd,
+                even,
+                step.prediction(len(even)),
+                self.update,
+                integrals.pop(level + 1) if integrals else np.ones(n_fine),
+                self._locked(ids[level + 1]),
+            )
+            yield level + 1, coefficients
+
+    def _assemble(
+        self, coefficients: FloatArray, ids: NDArray[np.int32], faces: NDArray[np.int32]
+    ) -> TriangleMesh:
+        if self.horizontal is None:
+            vertices, attributes = coefficients[:, :3], coefficients[:, 3:]
+        else:
+            vertices = np.column_stack([self.horizontal[ids], coefficients[:, 0]])
+            attributes = coefficients[:, 1:]
+        return TriangleMesh._trusted(
+            vertices.copy(), faces, attributes.copy(), self.attribute_names
+        )

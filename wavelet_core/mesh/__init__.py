@@ -1,0 +1,1 @@
+"""A TIN: vertices, faces, one-rings, legal collapses, curvature, quadrics, point location."""

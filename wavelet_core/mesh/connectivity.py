@@ -1,0 +1,77 @@
+"""From a triangle soup to ordered one-rings."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._kernels._jit import run_in_ranges
+from .._kernels.connectivity import BOUNDARY, INTERIOR, ISOLATED, PINCH, fill_stars, order_rings
+from ..errors import MeshError
+
+__all__ = ["BOUNDARY", "INTERIOR", "ISOLATED", "PINCH", "Connectivity", "build_connectivity"]
+
+
+class Connectivity(NamedTuple):
+    """Stars and ordered one-rings of the vertices of one mesh.
+
+    star_indptr : (n_vertices + 1,) int64; star : (3 n_faces,) int32
+        Faces of vertex v are ``star[star_indptr[v]:star_indptr[v + 1]]``.
+    ring : (3 n_faces + n_vertices,) int32; ring_size : (n_vertices,) int32
+        One-ring of v, counter-clockwise: ``ring[star_indptr[v] + v:][:ring_size[v]]``. On the
+        outline it runs from one outline neighbour to the other. Pinch and isolated vertices
+        have no ordered ring: their size is 0.
+    kind : (n_vertices,) int8
+        INTERIOR, BOUNDARY, PINCH (two fans of faces touch here only) or ISOLATED (no face).
+    """
+
+    star_indptr: NDArray[np.int64]
+    star: NDArray[np.int32]
+    ring: NDArray[np.int32]
+    ring_size: NDArray[np.int32]
+    kind: NDArray[np.int8]
+
+    def one_ring(self, vertex: int) -> NDArray[np.int32]:
+        """Return the ordered neighbours of one vertex."""
+        base = self.star_indptr[vertex] + vertex
+        return self.ring[base : base + self.ring_size[vertex]]
+
+
+def build_connectivity(faces: NDArray[np.int32], n_vertices: int) -> Connectivity:
+    """Return stars and one-rings of a triangle soup.
+
+    Parameters
+    ----------
+    faces : ndarray of int32, shape (n_faces, 3)
+        Faces, all of one orientation.
+    n_vertices : int
+        Number of vertices.
+
+    Raises
+    ------
+    MeshError
+        An edge that more than two faces share, or two faces of opposite orientation.
+    """
+    star_indptr = np.zeros(n_vertices + 1, dtype=np.int64)
+    star = np.empty(3 * len(faces), dtype=np.int32)
+    fill_stars(faces, star_indptr, star)
+    ring = np.empty(3 * len(faces) + n_vertices, dtype=np.int32)
+    ring_size = np.empty(n_vertices, dtype=np.int32)
+    kind = np.empty(n_vertices, dtype=np.int8)
+    bad_neighbour = np.empty(n_vertices, dtype=np.int32)
+    run_in_ranges(
+        order_rings, n_vertices, faces, star_indptr, star, kind, ring, ring_size, bad_neighbour
+    )
+    if (bad_neighbour >= 0).any():
+        vertex = int(np.argmax(bad_neighbour >= 0))
+        neighbour = int(bad_neighbour[vertex])
+        users = [int(f) for f in star[star_indptr[vertex] : star_indptr[vertex + 1]]]
+        users = [face for face in users if neighbour in faces[face]]
+        raise MeshError(
+            f"faces {users} share the edge {vertex}-{neighbour} in a way no surface does (more "
+            "than two of them, or of opposite orientation); remove or turn the offending face.",
+            vertex,
+        )
+    return Connectivity(star_indptr, star, ring, ring_size, kind)

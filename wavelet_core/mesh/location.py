@@ -1,0 +1,84 @@
+"""Point location in plan: which face covers a point, and how far off the point is."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._kernels.metrics import cover_points, sort_into_cells
+from .._validate import FloatArray, IntArray
+from .triangle_mesh import TriangleMesh
+
+#: Points that a cell of the search grid holds on average.
+POINTS_PER_CELL = 2
+
+
+class Cover(NamedTuple):
+    """The points that lie on a mesh in plan, and where.
+
+    point, face : (n_covered,) int64
+        Index of the point and of the face; where faces overlap in plan, the first one.
+    at_b, at_c : (n_covered,) float64
+        Barycentric weights of the face's second and third corner.
+    """
+
+    point: IntArray
+    face: IntArray
+    at_b: FloatArray
+    at_c: FloatArray
+
+
+def surface_errors(mesh: TriangleMesh, points: FloatArray) -> FloatArray:
+    """Return the vertical distance of points from a surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface; linear on each face.
+    points : ndarray, shape (n_points, 3)
+        x, y, z in the unit of the mesh.
+
+    Returns
+    -------
+    ndarray, shape (n_points,)
+        z of the point minus z of the surface at its x, y; NaN where no face covers it. Where
+        faces overlap in plan, the first one counts.
+    """
+    cover = cover_of(mesh, points[:, :2])
+    z = mesh.vertices[:, 2]
+    a, b, c = mesh.faces[cover.face].T
+    surface = z[a] + cover.at_b * (z[b] - z[a]) + cover.at_c * (z[c] - z[a])
+    errors = np.full(len(points), np.nan)
+    errors[cover.point] = points[cover.point, 2] - surface
+    return errors
+
+
+def cover_of(mesh: TriangleMesh, plan: FloatArray) -> Cover:
+    """Return which face covers each point, and where in it the point lies.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    plan : ndarray, shape (n_points, 2)
+        x and y of the points.
+    """
+    face_of = np.full(len(plan), -1, dtype=np.int64)
+    weights = np.empty((len(plan), 2))
+    if mesh.n_faces > 0 and len(plan) > 0:
+        origin = plan.min(axis=0)
+        local = np.ascontiguousarray(plan - origin)
+        extent = local.max(axis=0)
+        n_cells = max(len(plan) // POINTS_PER_CELL, 1)
+        area = max(extent[0], 1e-12 * extent[1]) * max(extent[1], 1e-12 * extent[0])
+        size = float(np.sqrt(area / n_cells)) or 1.0
+        size = max(size, float(extent.max()) / 20_000)
+        n_columns, n_rows = (int(side / size) + 1 for side in extent)
+        cell_indptr = np.zeros(n_columns * n_rows + 1, dtype=np.int64)
+        order = np.empty(len(plan), dtype=np.int64)
+        grid = (0.0, 0.0, size, n_columns, n_rows, cell_indptr, order)
+        sort_into_cells(local, *grid)
+        corners = mesh.vertices[:, :2] - origin
+        cover_points(corners, mesh.faces, local, *grid, face_of, weights)
+    point = np.flatnonzero(face_of >= 0)
+    return Cover(point, face_of[point], weights[point, 0], weights[point, 1])

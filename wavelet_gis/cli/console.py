@@ -1,0 +1,124 @@
+"""What a command says, and where: lines, figures, warnings, a progress bar."""
+
+from __future__ import annotations
+
+import json
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+from wavelet_gis._program import PROGRAM
+
+__all__ = ["Console"]
+
+Progress = Callable[[float], bool]
+
+
+class Console:
+    """The way out for everything that a command has to say.
+
+    Parameters
+    ----------
+    quiet : bool
+        Nothing but errors and, if asked for, figures.
+    as_json : bool
+        Figures as one JSON object on standard output instead of lines for people.
+    """
+
+    def __init__(self, *, quiet: bool = False, as_json: bool = False) -> None:
+        self._quiet = quiet
+        self._as_json = as_json
+        self._held_warnings: list[str] = []
+
+    def say(self, line: str) -> None:
+        """Print a line for people."""
+        if not self._quiet and not self._as_json:
+            print(line)
+
+    def figures(self, values: Mapping[str, Any]) -> None:
+        """Print the figures of the command, if JSON was asked for."""
+        if self._as_json:
+            print(json.dumps(_plain(values)))
+
+    def table(self, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
+        """Print a table with right-aligned columns."""
+        cells = [[_cell(value) for value in row] for row in rows]
+        widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
+        for line in [list(header), *cells]:
+            aligned = (cell.rjust(width) for cell, width in zip(line, widths, strict=True))
+            self.say("  ".join(aligned))
+
+    @contextmanager
+    def progress(self, what: str) -> Iterator[Progress]:
+        """Yield a function that takes a fraction and moves a bar, seen on a terminal only."""
+        self._show_warnings()
+        if self._quiet or not sys.stderr.isatty():
+            yield lambda fraction: True
+            return
+        from tqdm import tqdm
+
+        form = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}"
+        with tqdm(total=1.0, desc=what, bar_format=form, leave=False, file=sys.stderr) as bar:
+
+            def move(fraction: float) -> bool:
+                bar.update(max(min(fraction, 1.0) - bar.n, 0.0))
+                return True
+
+            yield move
+
+    @contextmanager
+    def one_line_warnings(self) -> Iterator[None]:
+        """Show each warning as one line on standard error; none when quiet.
+
+        They are held until the long work begins or the command is done: input that is refused
+        gets one line, which says what is wrong, and no others beside it.
+        """
+
+        def show(
+            message: Warning | str,
+            category: type[Warning],
+            filename: str,
+            lineno: int,
+            file: TextIO | None = None,
+            line: str | None = None,
+        ) -> None:
+            self._held_warnings.append(" ".join(str(message).split()))
+
+        with warnings.catch_warnings():
+            from wavelet_core.errors import SlowFallbackWarning
+            from wavelet_gis.errors import TerrainWarning
+
+            # What libraries warn of is for developers; ours is for the user, each once.
+            warnings.simplefilter("ignore")
+            warnings.simplefilter("always", TerrainWarning)
+            warnings.simplefilter("once", SlowFallbackWarning)
+            warnings.showwarning = show
+            yield
+        self._show_warnings()
+
+    def _show_warnings(self) -> None:
+        if not self._quiet:
+            for text in self._held_warnings:
+                print(f"{PROGRAM}: warning: {text}", file=sys.stderr)
+        self._held_warnings.clear()
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return "-" if value != value else f"{value:.4g}"
+    return f"{value:,}" if isinstance(value, int) else str(value)
+
+
+def _plain(value: Any) -> Any:
+    """JSON knows neither NaN nor numpy's numbers."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
+        return None
+    return value

@@ -1,0 +1,168 @@
+"""The command ``terrain-wavelets``: argument parsing and messages only.
+
+Each command is a module of `wavelet_gis.cli.commands` with ``HELP``, ``add_arguments(parser)`` and
+``run(arguments, console)``. A module that is put there is a command; it imports what it needs when
+it runs, so that ``--help`` comes at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import logging
+import os
+import pkgutil
+import re
+import signal
+import sqlite3
+import sys
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any
+
+from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
+from wavelet_gis.cli import commands
+from wavelet_gis.cli.console import Console
+
+__all__ = ["main"]
+
+REFUSED, INTERRUPTED, TERMINATED = 1, 130, 143
+
+#: Set to see where an unforeseen error came from.
+DEBUG_VARIABLE = "TERRAIN_WAVELETS_DEBUG"
+
+#: The order in which help lists the commands; any other module follows.
+_ORDER = (
+    "analyse",
+    "info",
+    "extract",
+    "reconstruct",
+    "simplify",
+    "filter",
+    "details",
+    "cluster",
+    "report",
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a command and return its exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Instead of the command line's.
+
+    Returns
+    -------
+    int
+        0 done, 1 refused with one line on standard error, 2 usage, 130 interrupted.
+    """
+    try:
+        chosen = _parser().parse_args(arguments)
+    except SystemExit as stop:  # argparse has said why
+        return stop.code if isinstance(stop.code, int) else 2
+    console = Console(quiet=chosen.quiet, as_json=chosen.json)
+    for library in ("laspy", "rasterio", "pyogrio"):
+        # Their complaints come to us as exceptions; printed too they would be noise.
+        logging.getLogger(library).addHandler(logging.NullHandler())
+        logging.getLogger(library).propagate = False
+    previous = _stop_on_termination()
+    try:
+        return _run(chosen, console)
+    finally:
+        if previous is not None:
+            signal.signal(signal.SIGTERM, previous)
+
+
+def _run(chosen: argparse.Namespace, console: Console) -> int:
+    try:
+        from wavelet_core.errors import WaveletError
+
+        with console.one_line_warnings():
+            chosen.run(chosen, console)
+        sys.stdout.flush()
+        return 0
+    except KeyboardInterrupt:
+        _complain("interrupted; nothing was written")
+        return INTERRUPTED
+    except _Terminated:
+        _complain("terminated; nothing was written")
+        return TERMINATED
+    except BrokenPipeError:
+        # The reader of our output has gone (`| head`); what is left to say has no taker.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except MemoryError:
+        _complain("there is not enough memory for this input; cut it into tiles, or thin it first")
+    except Exception as error:
+        if os.environ.get(DEBUG_VARIABLE):
+            raise
+        if isinstance(error, WaveletError):
+            _complain(str(error))
+        elif isinstance(error, OSError | sqlite3.Error):
+            _complain(f"the operating system refused: {error}; is the disk full?")
+        else:
+            _complain(
+                f"an unforeseen error, {type(error).__name__}: {error}; please report it, with "
+                f"what {DEBUG_VARIABLE}=1 prints"
+            )
+    return REFUSED
+
+
+class _Terminated(BaseException):
+    """SIGTERM came; unwinds so that scratch files go."""
+
+
+def _stop_on_termination() -> Any:
+    def stop(signal_number: int, frame: object) -> None:
+        raise _Terminated
+
+    try:
+        return signal.signal(signal.SIGTERM, stop)
+    except ValueError:  # not the main thread, where signals never come
+        return None
+
+
+def _complain(message: str) -> None:
+    # Writers know the scratch folder only; the user knows the file beside it.
+    line = re.sub(rf"\{SCRATCH_PREFIX}[^/\\\\]*[/\\\\]", "", " ".join(message.split()))
+    print(f"{PROGRAM}: error: {line}", file=sys.stderr)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=PROGRAM,
+        description="Terrain as a reversible wavelet pyramid of TINs.",
+        epilog=f"'{PROGRAM} COMMAND --help' tells the options of a command.",
+    )
+    parser.add_argument("--version", action="version", version=f"{PROGRAM} {_version()}")
+    subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
+    for name in _command_names():
+        module = importlib.import_module(f"{commands.__name__}.{name}")
+        _add_command(subparsers, name, module)
+    return parser
+
+
+def _add_command(
+    subparsers: argparse._SubParsersAction[argparse.ArgumentParser], name: str, module: ModuleType
+) -> None:
+    parser = subparsers.add_parser(name, help=module.HELP, description=module.HELP)
+    module.add_arguments(parser)
+    parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
+    parser.add_argument("--json", action="store_true", help="print figures as JSON")
+    parser.set_defaults(run=module.run)
+
+
+def _command_names() -> list[str]:
+    names = [m.name for m in pkgutil.iter_modules(commands.__path__) if m.name[0] != "_"]
+    return sorted(names, key=lambda name: (_ORDER.index(name) if name in _ORDER else 99, name))
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("terrain-wavelets")
+    except PackageNotFoundError:
+        return "(not installed)"

@@ -1,1 +1,0 @@
-"""The commands of ``terrain-wavelets``, one module each; see `wavelet_gis.cli`."""

@@ -1,0 +1,106 @@
+"""Layers into GeoPackages, through pyogrio."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterable
+
+from wavelet_gis.crs.frame import CoordinateSystem
+from wavelet_gis.errors import CrsWarning, OutputFileError
+from wavelet_gis.io.geopackage import LayerStyle, now, write_styles
+from wavelet_gis.products.layers import Layer
+
+__all__ = ["add_layers"]
+
+
+def add_layers(
+    path: str | os.PathLike[str], layers: Iterable[Layer], system: CoordinateSystem
+) -> int:
+    """Write layers and their styles into a GeoPackage, which is made if it is not there.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    layers : iterable of Layer
+        Written one after the other, so that only one need be in memory.
+    system : CoordinateSystem
+        The CRS of all of them.
+
+    Returns
+    -------
+    int
+        Number of features written.
+
+    Raises
+    ------
+    OutputFileError
+        When GDAL cannot write them.
+    """
+    import pyogrio
+
+    styles: list[LayerStyle] = []
+    n_features = 0
+    crs = _crs_for_gdal(system)
+    # GDAL stamps the time of writing on each layer; see `wavelet_gis.io.geopackage.now`.
+    pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": now()})
+    try:
+        for layer in layers:
+            _write_layer(path, layer, crs)
+            styles.append((layer.name, layer.title, layer.style, layer.description))
+            n_features += len(layer.geometry)
+    finally:
+        pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": None})
+    write_styles(path, styles)
+    return n_features
+
+
+def _write_layer(path: str | os.PathLike[str], layer: Layer, crs: str | None) -> None:
+    from pyogrio.errors import DataLayerError, DataSourceError
+    from pyogrio.raw import write
+
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "'crs' was not provided")
+        try:
+            write(
+                os.fspath(path),
+                layer.geometry,
+                list(layer.fields.values()),
+                list(layer.fields),
+                layer=layer.name,
+                driver="GPKG",
+                geometry_type=layer.geometry_type,
+                crs=crs,
+                layer_options={
+                    "DESCRIPTION": layer.description,
+                    "IDENTIFIER": layer.name,
+                    "GEOMETRY_NAME": "geom",
+                    "FID": "fid",
+                },
+                dataset_options={} if os.path.exists(path) else {"VERSION": "1.2"},
+            )
+        except (DataSourceError, DataLayerError) as error:
+            raise OutputFileError(
+                f"{path}: layer {layer.name} cannot be written ({error}); is the disk full?"
+            ) from error
+
+
+def _crs_for_gdal(system: CoordinateSystem) -> str | None:
+    """Return the definition for the layers; None where a GeoPackage could not hold it."""
+    if system.wkt is None:
+        return None
+    if system.kind == "unknown":
+        from pyproj import CRS
+
+        if not CRS.from_wkt(system.wkt).is_geocentric:
+            return system.wkt
+        # x and y on a map are no geocentric coordinates; QGIS would put them in the earth.
+        warnings.warn(
+            f"the layers are written without the geocentric CRS {system.name!r}, in which no map "
+            "can be drawn; set their CRS in QGIS",
+            CrsWarning,
+            stacklevel=3,
+        )
+        return None
+    return system.wkt

@@ -1,0 +1,1 @@
+"""Terrain in memory, without files: DEMs, clouds, TINs, where they came from, pyramids."""

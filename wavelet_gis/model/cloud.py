@@ -1,0 +1,105 @@
+"""A point cloud as arrays: the points of a LAS file as they came.
+
+Nothing here opens a file: `wavelet_gis.io.las` does so with laspy. How the points become a mesh
+and the mesh the points again is the matter of `wavelet_gis.model.cloud_origin`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["PointAttribute", "PointCloud", "cloud_bounds"]
+
+
+@dataclass(frozen=True, slots=True)
+class PointAttribute:
+    """One dimension of a LAS file that is lifted along with the elevation.
+
+    Attributes
+    ----------
+    name : str
+        Name of the channel.
+    dimension : str
+        The LAS dimension it comes from.
+    component : int or None
+        Which of the values of an array-valued extra dimension.
+    scale, offset : float
+        The attribute is ``value * scale + offset``.
+    values : (n_points,) of the dimension's own type
+        The stored numbers.
+    """
+
+    name: str
+    dimension: str
+    values: NDArray[Any]
+    component: int | None = None
+    scale: float = 1.0
+    offset: float = 0.0
+
+    def lifted(self) -> NDArray[np.float64]:
+        """Return the attribute as float64."""
+        values = self.values.astype(np.float64)
+        if self.scale != 1.0 or self.offset != 0.0:
+            values = values * self.scale + self.offset
+        return values
+
+
+@dataclass(frozen=True, slots=True)
+class PointCloud:
+    """The chosen points of a LAS file, as they came.
+
+    Attributes
+    ----------
+    integers : (n_points, 3) int32
+        X, Y, Z as stored.
+    scales, offsets : (3,) float64
+        A coordinate is ``integer * scale + offset``.
+    attributes : tuple of PointAttribute
+        What is lifted.
+    carried : dict of str to (n_points, ...) arrays
+        The other fields of the point records, to be given back untouched.
+    header, evlrs : (n_bytes,) uint8
+        Header with VLRs, and extended VLRs, as laspy reads them.
+    n_in_file : int
+        Points in the file; more than n_points when a class filter chose some.
+    classes : tuple of int or None
+        The class filter.
+    """
+
+    integers: NDArray[np.int32]
+    scales: NDArray[np.float64]
+    offsets: NDArray[np.float64]
+    attributes: tuple[PointAttribute, ...] = ()
+    carried: dict[str, NDArray[Any]] = field(default_factory=dict)
+    header: NDArray[np.uint8] = field(default_factory=lambda: np.empty(0, np.uint8))
+    evlrs: NDArray[np.uint8] = field(default_factory=lambda: np.empty(0, np.uint8))
+    n_in_file: int = 0
+    classes: tuple[int, ...] | None = None
+
+    @property
+    def n_points(self) -> int:
+        """Number of chosen points."""
+        return len(self.integers)
+
+    def coordinates(self) -> NDArray[np.float64]:
+        """Return x, y, z of the points in the file's units, ``(n_points, 3)``."""
+        return self.integers * self.scales + self.offsets
+
+    def columns(self) -> list[NDArray[Any]]:
+        """Return what must come back exactly: X, Y, Z and the attributes as stored."""
+        return [
+            *(np.ascontiguousarray(self.integers[:, k]) for k in range(3)),
+            *(attribute.values for attribute in self.attributes),
+        ]
+
+
+def cloud_bounds(cloud: PointCloud) -> tuple[float, float, float, float]:
+    """Return x_min, y_min, x_max, y_max of the points."""
+    low = cloud.integers.min(axis=0) * cloud.scales + cloud.offsets
+    high = cloud.integers.max(axis=0) * cloud.scales + cloud.offsets
+    low, high = np.minimum(low, high), np.maximum(low, high)  # a scale may be negative
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])

@@ -1,0 +1,342 @@
+"""A DEM as arrays: raster to mesh, and back to the very bits that came in.
+
+Nothing here opens a file: `wavelet_gis.io.raster` does so with rasterio, QGIS with its own classes.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import TriangleMesh
+from wavelet_core.errors import PyramidError
+from wavelet_gis.crs.frame import LocalFrame
+from wavelet_gis.errors import InputFileError
+from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
+
+__all__ = ["Dem", "GridGeometry", "RasterSource", "dem_mesh", "grid_bounds"]
+
+
+@dataclass(frozen=True, slots=True)
+class GridGeometry:
+    """Where the cells of a raster lie.
+
+    Attributes
+    ----------
+    shape : (n_rows, n_columns)
+        Size.
+    transform : (a, b, c, d, e, f)
+        ``x = a column + b row + c`` and ``y = d column + e row + f``, where (0, 0) is the outer
+        corner of the first cell and its centre is at (0.5, 0.5). Any regular affine map:
+        north-up, south-up, rotated.
+    """
+
+    shape: tuple[int, int]
+    transform: tuple[float, float, float, float, float, float]
+
+    @property
+    def is_axis_aligned(self) -> bool:
+        """Whether rows run along x and columns along y."""
+        return self.transform[1] == 0.0 and self.transform[3] == 0.0
+
+    def centres(
+        self, columns: NDArray[Any], rows: NDArray[Any]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return x and y of the centres of cells."""
+        a, b, c, d, e, f = self.transform
+        u, v = columns + 0.5, rows + 0.5
+        return a * u + b * v + c, d * u + e * v + f
+
+    def cells(
+        self, x: NDArray[np.float64], y: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return fractional columns and rows of positions; whole numbers are cell centres."""
+        a, b, c, d, e, f = self.transform
+        determinant = a * e - b * d
+        east, north = x - c, y - f
+        columns = (e * east - b * north) / determinant - 0.5
+        rows = (a * north - d * east) / determinant - 0.5
+        return columns, rows
+
+
+@dataclass(frozen=True, slots=True)
+class Dem:
+    """One band of elevations, as it came.
+
+    Attributes
+    ----------
+    values : (n_rows, n_columns), any integer or float type
+        The stored numbers.
+    valid : (n_rows, n_columns) bool
+        Which of them are elevations; the others are holes.
+    geometry : GridGeometry
+        Where the cells are.
+    nodata : int, float or None
+        The tag, NaN included.
+    scale, offset : float
+        An elevation is ``value * scale + offset`` (both usually 1 and 0).
+    profile : dict
+        JSON-able hints for the writer: driver, compression, tiling, tags.
+    """
+
+    values: NDArray[Any]
+    valid: NDArray[np.bool_]
+    geometry: GridGeometry
+    nodata: float | int | None = None
+    scale: float = 1.0
+    offset: float = 0.0
+    profile: dict[str, Any] = field(default_factory=dict)
+
+    def elevations(self) -> NDArray[np.float64]:
+        """Return the elevations of the valid cells, in row-major order."""
+        values = self.values[self.valid].astype(np.float64)
+        if self.scale != 1.0 or self.offset != 0.0:
+            values = values * self.scale + self.offset
+        return values
+
+
+@dataclass(frozen=True, slots=True)
+class RasterSource:
+    """How a pyramid's finest mesh becomes the DEM it was made from.
+
+    Attributes
+    ----------
+    geometry, nodata, scale, offset, profile
+        Of the DEM; see `Dem`.
+    valid : (n_rows, n_columns) bool
+        Its cells with data; the i-th of them is vertex i.
+    holes : (n_holes,) of the DEM's type
+        The numbers that were stored in the other cells.
+    ledger : ExactColumn or None
+        What rounding loses; None once the pyramid has been altered (filtered).
+    checksum : str
+        SHA-256 of the DEM's numbers.
+    """
+
+    geometry: GridGeometry
+    nodata: float | int | None
+    scale: float
+    offset: float
+    profile: dict[str, Any]
+    dtype: np.dtype[Any]
+    valid: NDArray[np.bool_]
+    holes: NDArray[Any]
+    ledger: ExactColumn | None
+    checksum: str
+
+    kind = "raster"
+
+    @classmethod
+    def from_dem(cls, dem: Dem) -> RasterSource:
+        """Return the source of a DEM, before there is a pyramid (and so without a ledger)."""
+        return cls(
+            geometry=dem.geometry,
+            nodata=dem.nodata,
+            scale=dem.scale,
+            offset=dem.offset,
+            profile=dem.profile,
+            dtype=dem.values.dtype.newbyteorder("<"),
+            valid=dem.valid,
+            holes=dem.values[~dem.valid],
+            ledger=None,
+            checksum=checksum([dem.values]),
+        )
+
+    def with_ledger(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterSource:
+        """Return the source that gives `dem` back exactly from the synthesised `mesh`."""
+        approximate = self._values(mesh, frame)
+        return replace(self, ledger=exact_column(dem.values[dem.valid], approximate))
+
+    def altered(self) -> RasterSource:
+        """Return the source for a pyramid whose coefficients have been changed."""
+        return replace(self, ledger=None)
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the original comes back bit for bit."""
+        return self.ledger is not None
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of valid cells."""
+        return int(np.count_nonzero(self.valid))
+
+    def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> Dem:
+        """Return the DEM of the finest mesh of a pyramid.
+
+        Raises
+        ------
+        PyramidError
+            When the mesh has not one vertex for each valid cell, or the exact original was due
+            and the result's checksum is another.
+        """
+        if mesh.n_vertices != self.n_vertices:
+            raise PyramidError(
+                f"the mesh has {mesh.n_vertices} vertices for {self.n_vertices} cells with data; "
+                "only the finest level can be turned back into the raster."
+            )
+        approximate = self._values(mesh, frame)
+        values = np.empty(self.geometry.shape, dtype=self.dtype)
+        values[~self.valid] = self.holes
+        if self.ledger is None:
+            values[self.valid] = _avoiding_nodata(
+                nearest_of_dtype(approximate, self.dtype), self.nodata
+            )
+        else:
+            values[self.valid] = self.ledger.restore(approximate)
+            if checksum([values]) != self.checksum:
+                raise PyramidError(
+                    "the reconstruction is not bit for bit the original (its checksum differs); "
+                    "the file is damaged, analyse the input anew."
+                )
+        return Dem(
+            values, self.valid, self.geometry, self.nodata, self.scale, self.offset, self.profile
+        )
+
+    def _values(self, mesh: TriangleMesh, frame: LocalFrame) -> NDArray[np.float64]:
+        elevations = frame.file_z(mesh.vertices[:, 2])
+        if self.scale == 1.0 and self.offset == 0.0:
+            return elevations
+        return (elevations - self.offset) / self.scale
+
+    def to_parts(self) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Return JSON-able fields, and arrays by name."""
+        fields: dict[str, Any] = {
+            "kind": self.kind,
+            "shape": list(self.geometry.shape),
+            "transform": list(self.geometry.transform),
+            "nodata": None if self.nodata is None else repr(self.nodata),
+            "scale": self.scale,
+            "offset": self.offset,
+            "profile": self.profile,
+            "dtype": self.dtype.str,
+            "checksum": self.checksum,
+        }
+        arrays: dict[str, NDArray[Any]] = {
+            "source/valid": np.packbits(self.valid.reshape(-1)),
+            "source/holes": self.holes,
+        }
+        if self.ledger is not None:
+            fields["ledger"], ledger_arrays = self.ledger.to_parts("source/ledger")
+            arrays.update(ledger_arrays)
+        return fields, arrays
+
+    @classmethod
+    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> RasterSource:
+        """Return the source that `to_parts` described, every claim checked.
+
+        Raises
+        ------
+        PyramidError
+            When a part is missing, of another type, or does not fit the rest.
+        """
+        try:
+            n_rows, n_columns = (int(n) for n in fields["shape"])
+            transform = tuple(float(value) for value in fields["transform"])
+            dtype = np.dtype(str(fields["dtype"]))
+            packed, holes = arrays["source/valid"], arrays["source/holes"]
+            nodata = _number(fields["nodata"])
+            scale, offset = float(fields["scale"]), float(fields["offset"])
+            profile, digest = dict(fields["profile"]), str(fields["checksum"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise PyramidError(
+                f"the description of the raster is damaged ({error}); analyse the input anew."
+            ) from error
+        n_cells = n_rows * n_columns
+        sound = (
+            n_rows > 0
+            and n_columns > 0
+            and dtype.kind in "iuf"
+            and packed.ndim == holes.ndim == 1
+            and packed.dtype == np.uint8
+            and len(packed) == -(-n_cells // 8)
+            and len(transform) == 6
+            and all(math.isfinite(value) for value in (*transform, scale, offset))
+            and transform[0] * transform[4] != transform[1] * transform[3]
+            and scale != 0.0
+        )
+        if not sound:
+            raise PyramidError("the description of the raster is damaged; analyse the input anew.")
+        valid = np.unpackbits(packed, count=n_cells).astype(bool).reshape(n_rows, n_columns)
+        if len(holes) != n_cells - np.count_nonzero(valid) or holes.dtype != dtype:
+            raise PyramidError("the holes of the raster do not fit its mask; analyse it anew.")
+        ledger = None
+        if "ledger" in fields:
+            ledger = ExactColumn.from_parts("source/ledger", fields["ledger"], arrays)
+            if ledger.dtype != dtype:
+                raise PyramidError("the raster's ledger has another data type; analyse it anew.")
+        geometry = GridGeometry((n_rows, n_columns), transform)  # type: ignore[arg-type]
+        return cls(geometry, nodata, scale, offset, profile, dtype, valid, holes, ledger, digest)
+
+
+def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
+    """Return the grid triangulation of a DEM, a vertex at each valid cell centre.
+
+    Parameters
+    ----------
+    dem : Dem
+        In the file's coordinates.
+    frame : LocalFrame
+        From `wavelet_gis.crs.frame.working_frame`.
+
+    Raises
+    ------
+    InputFileError
+        When there is no cell with data.
+    """
+    if not dem.valid.any():
+        raise InputFileError(
+            "every cell of the raster is nodata, so there is no terrain in it; "
+            "check the band and the nodata value."
+        )
+    n_rows, n_columns = dem.geometry.shape
+    elevation = np.zeros(dem.geometry.shape)
+    elevation[dem.valid] = frame.local_z(dem.elevations())
+    columns = np.arange(n_columns, dtype=np.float64)
+    rows = np.arange(n_rows, dtype=np.float64)
+    if dem.geometry.is_axis_aligned:
+        a, _, c, _, e, f = dem.geometry.transform
+        x = frame.local_x(a * (columns + 0.5) + c)
+        y = frame.local_y(e * (rows + 0.5) + f)
+        return TriangleMesh.from_grid(elevation, x, y, valid=dem.valid)
+    # A rotated grid has the triangles of an upright one; only its vertices lie elsewhere.
+    upright = TriangleMesh.from_grid(elevation, columns, rows, valid=dem.valid)
+    x, y = dem.geometry.centres(upright.vertices[:, 0], upright.vertices[:, 1])
+    vertices = np.column_stack([frame.local_x(x), frame.local_y(y), upright.vertices[:, 2]])
+    return TriangleMesh.from_triangles(vertices, upright.faces)
+
+
+def grid_bounds(geometry: GridGeometry) -> tuple[float, float, float, float]:
+    """Return x_min, y_min, x_max, y_max of the raster's corners."""
+    n_rows, n_columns = geometry.shape
+    columns = np.array([0, n_columns, n_columns, 0]) - 0.5
+    rows = np.array([0, 0, n_rows, n_rows]) - 0.5
+    x, y = geometry.centres(columns, rows)
+    return float(x.min()), float(y.min()), float(x.max()), float(y.max())
+
+
+def _avoiding_nodata(values: NDArray[Any], nodata: float | int | None) -> NDArray[Any]:
+    """Move elevations that fell on the nodata value to its neighbour, so they stay data."""
+    if nodata is None or (isinstance(nodata, float) and math.isnan(nodata)):
+        return values
+    clash = values == nodata
+    if clash.any():
+        tag = values.dtype.type(nodata)
+        if values.dtype.kind == "f":
+            values[clash] = np.nextafter(tag, values.dtype.type(0))
+        else:
+            values[clash] = tag + 1 if tag < np.iinfo(values.dtype).max else tag - 1
+    return values
+
+
+def _number(text: str | None) -> float | int | None:
+    if text is None:
+        return None
+    try:
+        return int(text)
+    except ValueError:
+        return float(text)

@@ -1,0 +1,264 @@
+"""TINs out of points and lines, or of triangles that come one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from wavelet_core import Pyramid, TriangleMesh
+from wavelet_core.errors import MeshError
+from wavelet_core.mesh.location import surface_errors
+from wavelet_core.mesh.triangulation import Merged, delaunay_faces, merge_duplicates
+from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.model.terrain import frame_of_bounds
+from wavelet_gis.model.terrain_pyramid import MeshSource, PyramidRecord
+
+__all__ = [
+    "ConstrainedTin",
+    "TinTerrain",
+    "frame_of_coordinates",
+    "mesh_of_corners",
+    "tin_with_lines",
+]
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+
+class ConstrainedTin(NamedTuple):
+    """A TIN that has given lines as edges.
+
+    mesh : TriangleMesh
+    is_on_line : (n_vertices,) bool, the vertices of the breaklines
+    is_marked : (n_vertices,) bool, the points that were marked
+    """
+
+    mesh: TriangleMesh
+    is_on_line: BoolArray
+    is_marked: BoolArray
+
+
+def tin_with_lines(
+    points: FloatArray,
+    attributes: FloatArray,
+    attribute_names: Sequence[str],
+    *,
+    breaklines: Sequence[FloatArray] = (),
+    outline: Sequence[FloatArray] = (),
+    contains: Callable[[FloatArray], BoolArray] | None = None,
+    is_marked: BoolArray | None = None,
+) -> ConstrainedTin:
+    """Return the Delaunay TIN of points in which breaklines and an outline are edges.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n_points, 3)
+        x, y, z; only points inside the outline.
+    attributes : ndarray, shape (n_points, n_attributes)
+        Their attributes.
+    attribute_names : sequence of str
+        One name an attribute.
+    breaklines, outline : sequence of ndarray, shape (n, 3)
+        Lines, and the rings of a clip polygon (closed: the last corner repeats the first). They
+        may share corners but must not cross. Where z is NaN it is that of the TIN of the points.
+    contains : callable, optional
+        Takes (m, 2) positions and tells which are inside the clip polygon.
+    is_marked : ndarray of bool, shape (n_points,), optional
+        Points to be told of in the result, for locking.
+
+    Returns
+    -------
+    ConstrainedTin
+        Vertices that lines add have the attributes of the nearest point.
+
+    Raises
+    ------
+    MeshError
+        Fewer than three points, or lines that cross.
+    MissingDependencyError
+        pythoncdt is absent.
+    """
+    n_points = len(points)
+    rings = [ring for ring in outline if len(ring) > 1]
+    lines = [line for line in breaklines if len(line) > 1] + rings
+    n_breakline = sum(len(line) for line in lines) - sum(len(ring) for ring in rings)
+    of_lines = np.concatenate(lines) if lines else np.empty((0, 3))
+    of_lines = _with_heights(of_lines, points)
+    nearest = cKDTree(points[:, :2]).query(of_lines[:, :2])[1] if len(of_lines) else []
+    vertices = np.concatenate([points, of_lines])
+    columns = np.concatenate([attributes, attributes[nearest]])
+    merged = _merged_by_line(vertices, n_points)
+    edges = _edges_of(lines, n_points, merged.representative)
+    on_line = np.zeros(len(vertices), dtype=bool)
+    on_line[n_points : n_points + n_breakline] = True
+    marked = np.zeros(len(vertices), dtype=bool)
+    if is_marked is not None:
+        marked[:n_points] = is_marked
+    kept, count = merged.kept, len(merged.kept)
+    plan = vertices[kept]
+    faces = delaunay_faces(plan[:, :2], edges if len(edges) else None)
+    if contains is not None and rings:
+        is_ring = np.zeros(count, dtype=bool)
+        is_ring[merged.representative[n_points + n_breakline :]] = True
+        faces = _inside(plan, faces, is_ring, contains)
+    mesh = TriangleMesh(plan, faces, columns[kept], attribute_names)
+    return ConstrainedTin(
+        mesh,
+        _any_of(on_line, merged.representative, count),
+        _any_of(marked, merged.representative, count),
+    )
+
+
+def mesh_of_corners(corners: FloatArray) -> TriangleMesh:
+    """Return the mesh of triangles given one by one; equal corners become one vertex.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (n_faces, 3, 3)
+        Face, corner, x y z; rings may run either way.
+
+    Raises
+    ------
+    MeshError
+        When there is no triangle.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> a, b, c, d = [0, 0, 5], [1, 0, 6], [0, 1, 7], [1, 1, 8]
+    >>> mesh = mesh_of_corners(np.array([[a, b, c], [c, b, d]], dtype=float))
+    >>> mesh.n_vertices, mesh.n_faces
+    (4, 2)
+    """
+    if len(corners) == 0:
+        raise MeshError("there is no triangle; give a layer of triangles.")
+    vertices, index = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    faces = index.reshape(-1, 3)
+    a, b, c = faces.T
+    is_flat = (a == b) | (b == c) | (c == a)
+    return TriangleMesh.from_triangles(vertices, faces[~is_flat])
+
+
+class TinTerrain(NamedTuple):
+    """A TIN in its working frame, ready to be analysed; the counterpart of `terrain.Terrain`.
+
+    name : str
+    mesh : TriangleMesh
+    system : CoordinateSystem
+    frame : LocalFrame
+    vertical_unit : str
+    """
+
+    name: str
+    mesh: TriangleMesh
+    system: CoordinateSystem
+    frame: LocalFrame
+    vertical_unit: str
+
+    def record(self, pyramid: Pyramid) -> PyramidRecord:
+        """Return the pyramid with everything that its file must hold."""
+        return PyramidRecord(
+            pyramid=pyramid,
+            system=self.system,
+            frame=self.frame,
+            vertical_unit=self.vertical_unit,
+            source=MeshSource(),
+            source_name=self.name,
+        )
+
+
+def frame_of_coordinates(
+    name: str, coordinates: FloatArray, system: CoordinateSystem, vertical_unit: str | None = None
+) -> tuple[LocalFrame, str]:
+    """Return the working frame over coordinates in a CRS, and the name of their unit of z.
+
+    Parameters
+    ----------
+    name : str
+        Of the layer, for messages.
+    coordinates : ndarray, shape (n, 3)
+        In the CRS.
+    system : CoordinateSystem
+        The CRS.
+    vertical_unit : str, optional
+        Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
+
+    Raises
+    ------
+    MeshError
+        When there is not one point.
+    CrsError
+        When the CRS or its extent cannot serve.
+    """
+    if len(coordinates) == 0:
+        raise MeshError(
+            f"{name}: there is not one point; check the layer, its filter and its selection."
+        )
+    low, high = coordinates.min(axis=0), coordinates.max(axis=0)
+    return frame_of_bounds(name, system, (low[0], low[1], high[0], high[1]), vertical_unit)
+
+
+def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:
+    """Fill the heights that are NaN from the TIN of the points, or the nearest one outside it."""
+    missing = np.isnan(of_lines[:, 2])
+    if not missing.any():
+        return of_lines
+    of_lines = of_lines.copy()
+    at_zero = np.column_stack([of_lines[missing, :2], np.zeros(np.count_nonzero(missing))])
+    heights = -surface_errors(TriangleMesh.from_points(points), at_zero)
+    uncovered = np.isnan(heights)
+    if uncovered.any():
+        nearest = cKDTree(points[:, :2]).query(at_zero[uncovered, :2])[1]
+        heights[uncovered] = points[nearest, 2]
+    of_lines[missing, 2] = heights
+    return of_lines
+
+
+def _merged_by_line(vertices: FloatArray, n_points: int) -> Merged:
+    """Merge vertices at one place; those of a line stand for the points there."""
+    ranked = vertices.copy()
+    # merge_duplicates keeps the lowest, so lines are put below all points.
+    ranked[n_points:, 2] = vertices[:, 2].min(initial=0.0) - 1.0
+    return merge_duplicates(ranked)
+
+
+def _edges_of(lines: Sequence[FloatArray], first: int, representative: IntArray) -> IntArray:
+    edges = []
+    start = first
+    for line in lines:
+        ids = representative[start : start + len(line)]
+        edges.append(np.column_stack([ids[:-1], ids[1:]]))
+        start += len(line)
+    if not edges:
+        return np.empty((0, 2), dtype=np.int64)
+    joined = np.sort(np.concatenate(edges), axis=1)
+    return np.unique(joined[joined[:, 0] != joined[:, 1]], axis=0)
+
+
+def _inside(
+    vertices: FloatArray,
+    faces: IntArray,
+    is_ring: BoolArray,
+    contains: Callable[[FloatArray], BoolArray],
+) -> IntArray:
+    """Drop the faces outside the clip polygon: only those between three corners of rings can be."""
+    doubtful = is_ring[faces].all(axis=1)
+    centres = vertices[faces[doubtful], :2].mean(axis=1)
+    keep = np.ones(len(faces), dtype=bool)
+    keep[doubtful] = contains(centres)
+    if not keep.any():
+        raise MeshError(
+            "nothing of the terrain is inside the clip polygon; give one that overlaps."
+        )
+    return faces[keep]
+
+
+def _any_of(flags: BoolArray, representative: IntArray, n_vertices: int) -> BoolArray:
+    result = np.zeros(n_vertices, dtype=bool)
+    result[representative[flags]] = True
+    return result

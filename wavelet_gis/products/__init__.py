@@ -1,0 +1,1 @@
+"""Layers and rasters in memory, ready to be written by anyone."""

@@ -1,0 +1,184 @@
+"""The layers of a pyramid as arrays: what QGIS shows of it.
+
+``coarse_tin`` (Polygon Z), ``coarse_vertices`` (Point Z) and ``detail_level_00`` and on (Point Z at
+each removed vertex). Who writes them, pyogrio or QGIS, is another module's matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import TriangleMesh
+from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.products.styles import detail_style, tin_style, vertex_style
+from wavelet_gis.products.wkb import points_wkb, triangles_wkb
+
+__all__ = ["Layer", "coarse_layers", "detail_layer_name", "detail_layers", "tin_layers"]
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """A vector layer in the coordinates of the input.
+
+    Attributes
+    ----------
+    name : str
+        Of the layer.
+    geometry_type : {"Point Z", "Polygon Z"}
+        Of all its features.
+    geometry : (n,) array of bytes
+        Well-known binary.
+    fields : dict of str to (n,) array
+        Integers and floats.
+    style : str
+        QML.
+    title, description : str
+        For people.
+    """
+
+    name: str
+    geometry_type: Literal["Point Z", "Polygon Z"]
+    geometry: NDArray[Any]
+    fields: dict[str, NDArray[Any]]
+    style: str
+    title: str
+    description: str
+
+
+def coarse_layers(record: PyramidRecord, level: int = 0) -> Iterator[Layer]:
+    """Yield the TIN and the vertices of a level, by default the coarsest.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        Where they are taken from.
+    level : int
+        Which level.
+    """
+    mesh = record.pyramid.mesh(level)
+    name = "coarse" if level == 0 else f"level_{level:02d}"
+    yield from tin_layers(record, mesh, record.pyramid.vertex_ids(level), name)
+
+
+def tin_layers(
+    record: PyramidRecord,
+    mesh: TriangleMesh,
+    vertex_ids: NDArray[np.int64],
+    name: str = "tin",
+) -> Iterator[Layer]:
+    """Yield the layers of a TIN: ``<name>_tin`` and ``<name>_vertices``.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        Gives the frame of the mesh.
+    mesh : TriangleMesh
+        In the working frame, where slopes are measured.
+    vertex_ids : (n_vertices,) int64
+        Ids of the vertices in the input.
+    name : str
+        What the layers' names begin with.
+    """
+    vertices = record.frame.to_file(mesh.vertices)
+    corners = vertices[mesh.faces]
+    elevation = corners[:, :, 2].mean(axis=1)
+    slope = slopes(mesh)
+    yield Layer(
+        f"{name}_tin",
+        "Polygon Z",
+        triangles_wkb(vertices, mesh.faces),
+        {
+            "triangle_id": np.arange(mesh.n_faces, dtype=np.int64),
+            "vertex_a": vertex_ids[mesh.faces[:, 0]],
+            "vertex_b": vertex_ids[mesh.faces[:, 1]],
+            "vertex_c": vertex_ids[mesh.faces[:, 2]],
+            "elevation": elevation,
+            "slope": slope,
+        },
+        tin_style(elevation),
+        "Coarse TIN by elevation" if name == "coarse" else "TIN by elevation",
+        "One triangle a row: mean elevation, and slope in degrees",
+    )
+    fields: dict[str, NDArray[Any]] = {"vertex_id": vertex_ids, "elevation": vertices[:, 2]}
+    for k, attribute in enumerate(mesh.attribute_names):
+        fields[_free_name(attribute, [*fields, *_RESERVED])] = mesh.attributes[:, k]
+    yield Layer(
+        f"{name}_vertices",
+        "Point Z",
+        points_wkb(vertices),
+        fields,
+        vertex_style(),
+        "Coarse vertices" if name == "coarse" else "Vertices",
+        "One vertex a row: id in the input, elevation and attributes",
+    )
+
+
+def detail_layers(record: PyramidRecord) -> Iterator[Layer]:
+    """Yield a layer of details for each step, coarsest first, made one at a time.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        Where they are taken from.
+    """
+    pyramid = record.pyramid
+    names: list[str] = []
+    for channel in pyramid.channels:
+        names.append(_free_name(f"w_{channel}", [*names, *_RESERVED, *_DETAIL_FIELDS]))
+    for level, detail in pyramid.details():
+        vectors = record.file_details(detail.vectors)
+        magnitude = np.linalg.norm(vectors, axis=1)
+        yield Layer(
+            detail_layer_name(level),
+            "Point Z",
+            points_wkb(record.frame.to_file(detail.positions)),
+            {
+                "vertex_id": detail.vertex_ids,
+                "level": np.full(len(vectors), level, dtype=np.int32),
+                **{name: vectors[:, k] for k, name in enumerate(names)},
+                "magnitude": magnitude,
+            },
+            detail_style(level, pyramid.n_levels, magnitude),
+            f"Details of level {level}",
+            f"Vertices that the step from level {level + 1} to {level} removed, with their "
+            "detail vectors",
+        )
+
+
+def detail_layer_name(level: int) -> str:
+    """Name of the layer of a step's details."""
+    return f"detail_level_{level:02d}"
+
+
+def slopes(mesh: TriangleMesh) -> NDArray[np.float64]:
+    """Slope of each face in degrees; 90 for an upright one.
+
+    Examples
+    --------
+    >>> from wavelet_core import TriangleMesh
+    >>> mesh = TriangleMesh([[0, 0, 0], [1, 0, 1], [0, 1, 0]], [[0, 1, 2]])
+    >>> slopes(mesh).round(6).tolist()
+    [45.0]
+    """
+    a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    run = np.hypot(normals[:, 0], normals[:, 1])
+    return np.degrees(np.arctan2(run, np.abs(normals[:, 2])))
+
+
+_RESERVED = ("fid", "geom")
+_DETAIL_FIELDS = ("vertex_id", "level", "magnitude")
+
+
+def _free_name(wanted: str, taken: Sequence[str]) -> str:
+    """Return a column name that differs from others in more than case, as SQLite needs."""
+    used = {name.lower() for name in taken}
+    name, k = wanted, 2
+    while name.lower() in used:
+        name, k = f"{wanted}_{k}", k + 1
+    return name

@@ -1,0 +1,95 @@
+"""A surface of a pyramid evaluated on a grid, as a DEM in the coordinates of the input."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from wavelet_core import TriangleMesh
+from wavelet_core.errors import OptionError
+from wavelet_gis.model.dem import Dem, GridGeometry, RasterSource
+from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.products.rasterise import geometry_over, rasterise
+
+__all__ = ["surface_dem", "surface_difference"]
+
+
+def surface_dem(
+    record: PyramidRecord,
+    mesh: TriangleMesh,
+    *,
+    cell_size: float | None = None,
+    attribute: str | None = None,
+) -> Dem:
+    """Return the values of a mesh of the pyramid at the cell centres of a grid.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        Gives the frame, and the grid where it was made from a raster.
+    mesh : TriangleMesh
+        In the working frame.
+    cell_size : float, optional
+        Of a grid over the mesh, in the input's unit of x and y. By default the grid of the raster
+        that the pyramid was made from; without one, the mean spacing of the mesh's vertices.
+    attribute : str, optional
+        What to evaluate instead of the elevation.
+
+    Returns
+    -------
+    Dem
+        Of 64-bit floats where the input was such a raster, else of 32-bit ones; cells that no face
+        covers hold the input's nodata value, or NaN.
+
+    Raises
+    ------
+    OptionError
+        When there is no such attribute.
+    """
+    in_file = record.file_mesh(mesh)
+    values = _attribute_values(in_file, attribute) if attribute else None
+    source = record.source if isinstance(record.source, RasterSource) else None
+    if source is not None and not cell_size:
+        geometry = source.geometry
+    else:
+        geometry = _geometry(in_file, cell_size)
+    grid = rasterise(in_file, geometry, values)
+    if source is None or source.dtype != np.float64:
+        grid = grid.astype(np.float32)
+    covered = np.isfinite(grid)
+    tag = float("nan")
+    if source is not None and source.nodata is not None:
+        largest = float(np.finfo(grid.dtype).max)
+        tag = float(source.nodata) if abs(float(source.nodata)) <= largest else tag
+    grid[~covered] = tag
+    profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
+    return Dem(grid, covered, geometry, tag, profile=profile)
+
+
+def surface_difference(before: PyramidRecord, after: PyramidRecord) -> Dem:
+    """Return the finest surface of one record minus that of another, on the grid of their raster.
+
+    Parameters
+    ----------
+    before, after : PyramidRecord
+        Of the same raster: a pyramid, and the same one filtered.
+    """
+    old, new = (surface_dem(record, record.pyramid.synthesise()) for record in (before, after))
+    valid = old.valid & new.valid
+    values = np.where(valid, new.values - old.values, np.float32("nan")).astype(np.float32)
+    return Dem(values, valid, old.geometry, float("nan"), profile=old.profile)
+
+
+def _geometry(mesh: TriangleMesh, cell_size: float | None) -> GridGeometry:
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    area = (high[0] - low[0]) * (high[1] - low[1])
+    size = cell_size or float(np.sqrt(area / mesh.n_vertices))
+    return geometry_over((low[0], low[1], high[0], high[1]), size)
+
+
+def _attribute_values(mesh: TriangleMesh, attribute: str) -> np.ndarray:
+    if attribute not in mesh.attribute_names:
+        raise OptionError(
+            f"the pyramid has no attribute {attribute!r}; it has "
+            f"{', '.join(mesh.attribute_names) or 'none'}."
+        )
+    return mesh.attributes[:, mesh.attribute_names.index(attribute)]

@@ -1,0 +1,190 @@
+"""Vertex-frequency analysis and shape of a pyramid in the units of its input.
+
+Arrays and layers only; files are written by `wavelet_gis.io`, or by QGIS.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import TriangleMesh
+from wavelet_core.features.shape import SHAPE_NAMES, surface_shape
+from wavelet_core.features.spectrum import STAYS, band_components, band_energies, vertex_details
+from wavelet_core.lifting.spacings import level_spacings
+from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.products.layers import Layer
+from wavelet_gis.products.styles import detail_style, vertex_style
+from wavelet_gis.products.wkb import points_wkb
+
+__all__ = [
+    "band_names",
+    "component_columns",
+    "energy_columns",
+    "shape_columns",
+    "shape_layer",
+    "vertex_layer",
+]
+
+Progress = Callable[[float], bool | None]
+FloatArray = NDArray[np.float64]
+
+
+def energy_columns(
+    record: PyramidRecord, channel: str | None = None, progress: Progress | None = None
+) -> FloatArray:
+    """Root of the band energies at every vertex of the input, ``(n_vertices, L)``.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        What is analysed.
+    channel : str, optional
+        One of the pyramid's; by default the geometry.
+    progress : callable, optional
+        See `wavelet_core.features.spectrum.band_energies`.
+
+    Returns
+    -------
+    ndarray
+        Root mean square details, in the input's unit of z or in that of the attribute.
+    """
+    energies: FloatArray = np.sqrt(band_energies(record.pyramid, channel, progress))
+    return energies / _file_scale(record, channel)
+
+
+def component_columns(
+    record: PyramidRecord, channel: str | None = None, progress: Progress | None = None
+) -> FloatArray:
+    """Return what each level adds to the input at every vertex, ``(n_vertices, L)``, signed.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        What is analysed.
+    channel : str, optional
+        One of the pyramid's; by default z.
+    progress : callable, optional
+        See `wavelet_core.features.spectrum.band_components`.
+    """
+    components = band_components(record.pyramid, channel, progress)
+    return components.bands / _file_scale(record, channel or "z")
+
+
+def shape_columns(mesh: TriangleMesh) -> FloatArray:
+    """Slope and aspect in degrees and four curvatures at the vertices, ``(n_vertices, 6)``.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        In the working frame. Curvatures are in one over its unit of length.
+    """
+    shape = surface_shape(mesh)
+    return np.column_stack([shape.named(name) for name in SHAPE_NAMES])
+
+
+def band_names(record: PyramidRecord, what: str = "rms") -> tuple[str, ...]:
+    """Name of each band with the spacing that it belongs to, the coarsest level first.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        Whose levels are named.
+    what : str
+        The first word.
+    """
+    spacings = level_spacings(record.pyramid)[1:]
+    unit = "m" if record.system.kind == "geographic" else "units"
+    if record.system.kind == "projected" and record.system.horizontal_unit == 1.0:
+        unit = "m"
+    return tuple(
+        f"{what} of level {level}, spacing {spacing:.3g} {unit}"
+        for level, spacing in enumerate(spacings)
+    )
+
+
+def vertex_layer(
+    record: PyramidRecord, channel: str | None = None, progress: Progress | None = None
+) -> Layer:
+    """Every vertex of the input with the level at which it went, its details and its spectrum.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        What is analysed.
+    channel : str, optional
+        Of the spectrum; by default the geometry.
+    progress : callable, optional
+        See `wavelet_core.features.spectrum.band_energies`.
+
+    Returns
+    -------
+    Layer
+        ``vertex_spectra``: ``vertex_id``, ``level`` (-1 of the coarsest mesh's vertices, which
+        have no details: NULL), ``w_<channel>``, ``magnitude``, and ``rms_00`` and on, the root
+        of the band energies.
+    """
+    pyramid = record.pyramid
+    finest = pyramid.synthesise()
+    details = vertex_details(pyramid)
+    vectors = record.file_details(details.vectors)
+    magnitude = np.linalg.norm(vectors, axis=1)
+    energies = energy_columns(record, channel, progress)
+    fields: dict[str, NDArray] = {
+        "vertex_id": np.arange(finest.n_vertices, dtype=np.int64),
+        "level": details.level,
+    }
+    for k, name in enumerate(pyramid.channels):
+        fields[f"w_{name}"] = vectors[:, k]
+    fields["magnitude"] = magnitude
+    for level in range(pyramid.n_levels):
+        fields[f"rms_{level:02d}"] = energies[:, level]
+    known = magnitude[details.level != STAYS]
+    return Layer(
+        "vertex_spectra",
+        "Point Z",
+        points_wkb(record.frame.to_file(finest.vertices)),
+        fields,
+        detail_style(max(pyramid.n_levels - 1, 0), pyramid.n_levels, known),
+        "Spectra of the vertices",
+        "One input vertex a row: level at which it went, detail vector, root mean square detail "
+        "around it in the band of each level",
+    )
+
+
+def shape_layer(record: PyramidRecord, level: int) -> Layer:
+    """Return the vertices of a level with slope, aspect and curvatures of its surface.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        What is analysed.
+    level : int
+        Whose surface.
+    """
+    mesh = record.pyramid.mesh(level)
+    columns = shape_columns(mesh)
+    vertices = record.frame.to_file(mesh.vertices)
+    fields: dict[str, NDArray] = {
+        "vertex_id": record.pyramid.vertex_ids(level),
+        "elevation": vertices[:, 2],
+    }
+    fields.update({name: columns[:, k] for k, name in enumerate(SHAPE_NAMES)})
+    return Layer(
+        f"shape_level_{level:02d}",
+        "Point Z",
+        points_wkb(vertices),
+        fields,
+        vertex_style(),
+        f"Shape of level {level}",
+        "Slope and aspect (of descent, from north) in degrees; curvatures in one over the unit of "
+        "the working frame, convex positive",
+    )
+
+
+def _file_scale(record: PyramidRecord, channel: str | None) -> float:
+    """Working units in one of the file's, for a channel."""
+    is_height = channel == "z" or (channel is None and record.pyramid.signal == "z")
+    return record.frame.z_scale if is_height else 1.0

@@ -1,0 +1,298 @@
+"""The figures of a quality report: sizes, errors, triangles and details of every level."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import TriangleMesh
+from wavelet_core.errors import Cancelled, OptionError
+from wavelet_core.features.shape import surface_shape
+from wavelet_core.mesh.location import surface_errors
+from wavelet_gis.model.terrain_pyramid import PyramidRecord
+
+__all__ = ["ReportData", "chosen_levels", "report_data", "triangle_quality"]
+
+Progress = Callable[[float], bool | None]
+FloatArray = NDArray[np.float64]
+
+#: Triangles with an angle below this are called slivers, in degrees.
+SLIVER_ANGLE = 10.0
+
+#: Classes of slope, in degrees, over which the error is broken down.
+SLOPE_CLASSES = (0.0, 5.0, 15.0, 30.0, 90.0)
+
+#: Shares of the input's vertices at which a level is shown as a picture.
+SHOWN_SHARES = (0.25, 0.05)
+
+#: Bins of the histograms, common to all levels.
+N_BINS = 40
+
+#: How many of the largest errors are listed, how far apart (as a part of the extent), and among
+#: how many they are sought.
+N_WORST, WORST_REACH, N_CANDIDATES = 8, 0.02, 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class ReportData:
+    """The figures, and the surfaces that the pictures show.
+
+    Attributes
+    ----------
+    figures : dict
+        JSON-able.
+    shown : dict of int to TriangleMesh
+        The chosen levels in the working frame, and the finest.
+    errors : dict of int to (n_vertices,) float64
+        Signed vertical distance of every input vertex from each chosen level, in the input's
+        unit of z; NaN where it is not covered.
+    """
+
+    figures: dict[str, Any]
+    shown: dict[int, TriangleMesh]
+    errors: dict[int, FloatArray]
+
+
+def report_data(
+    record: PyramidRecord,
+    levels: Sequence[int] | None = None,
+    progress: Progress | None = None,
+) -> ReportData:
+    """Return everything that a quality report tells.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        What is reported on.
+    levels : sequence of int, optional
+        Which levels are shown as pictures; see `chosen_levels`.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    OptionError
+        A level that the pyramid does not have.
+    Cancelled
+        ``progress`` returned False.
+    """
+    pyramid = record.pyramid
+    chosen = chosen_levels(record) if levels is None else list(dict.fromkeys(levels))
+    for level in chosen:
+        if not 0 <= level <= pyramid.n_levels:
+            raise OptionError(f"there is no level {level}; they are 0 to {pyramid.n_levels}.")
+    finest = pyramid.synthesise()
+    rows, shown, errors = [], {pyramid.n_levels: finest}, {}
+    for level, mesh in pyramid.meshes():
+        distance = surface_errors(mesh, finest.vertices) / record.frame.z_scale
+        rows.append(_level_row(record, level, mesh, finest, distance))
+        if level in chosen:
+            shown[level], errors[level] = mesh, distance
+        if progress is not None and progress((level + 1) / (pyramid.n_levels + 1)) is False:
+            raise Cancelled("the report was cancelled; nothing was written.")
+    figures = {
+        "source": _source_figures(record, finest),
+        "levels": rows[::-1],
+        "details": _detail_figures(record),
+        "shown": [_error_figures(record, finest, level, errors[level]) for level in chosen],
+        "parameters": dict(pyramid.parameters),
+        "history": list(record.history),
+        "versions": _versions(),
+    }
+    return ReportData(figures, shown, {level: errors[level] for level in chosen})
+
+
+def chosen_levels(record: PyramidRecord) -> list[int]:
+    """Return the levels nearest to a quarter and a twentieth of the vertices, and the coarsest.
+
+    Parameters
+    ----------
+    record : PyramidRecord
+        Whose levels.
+    """
+    pyramid = record.pyramid
+    counts = np.array([pyramid.n_vertices(level) for level in range(pyramid.n_levels + 1)])
+    shares = np.log(counts / counts[-1])
+    nearest = [int(np.argmin(np.abs(shares - np.log(share)))) for share in SHOWN_SHARES]
+    wanted = [level for level in nearest if level < pyramid.n_levels]
+    return list(dict.fromkeys([*wanted, 0]))
+
+
+def triangle_quality(mesh: TriangleMesh) -> dict[str, float]:
+    """Return median and 5th percentile of the smallest angles in plan, and the share of slivers.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        At least one face, or all figures are NaN.
+
+    Examples
+    --------
+    >>> from wavelet_core import synthetic
+    >>> triangle_quality(synthetic.plane())["median_smallest_angle"]
+    45.0
+    """
+    if mesh.n_faces == 0:
+        return dict.fromkeys(
+            ("median_smallest_angle", "low_smallest_angle", "sliver_share"), float("nan")
+        )
+    corners = mesh.vertices[mesh.faces, :2]
+    sides = np.roll(corners, -1, axis=1) - corners
+    before = -np.roll(sides, 1, axis=1)
+    cross = sides[..., 0] * before[..., 1] - sides[..., 1] * before[..., 0]
+    angles = np.degrees(np.arctan2(np.abs(cross), (sides * before).sum(axis=2))).min(axis=1)
+    return {
+        "median_smallest_angle": round(float(np.median(angles)), 6),
+        "low_smallest_angle": round(float(np.quantile(angles, 0.05)), 6),
+        "sliver_share": float(np.mean(angles < SLIVER_ANGLE)),
+    }
+
+
+def _level_row(
+    record: PyramidRecord,
+    level: int,
+    mesh: TriangleMesh,
+    finest: TriangleMesh,
+    distance: FloatArray,
+) -> dict[str, Any]:
+    ids = record.pyramid.vertex_ids(level)
+    reference = np.hstack([finest.vertices, finest.attributes])
+    extent = np.ptp(reference, axis=0)
+    difference = np.hstack([mesh.vertices, mesh.attributes]) - reference[ids]
+    difference /= np.where(extent > 0, extent, 1.0)
+    covered = distance[np.isfinite(distance)]
+    edges = mesh.vertices[mesh.faces, :2]
+    lengths = np.linalg.norm(edges - np.roll(edges, 1, axis=1), axis=2)
+    return {
+        "level": level,
+        "n_vertices": mesh.n_vertices,
+        "n_faces": mesh.n_faces,
+        "vertex_share": mesh.n_vertices / finest.n_vertices,
+        "spacing": float(np.median(lengths)) if lengths.size else float("nan"),
+        "rmse_coefficients": float(np.sqrt((difference**2).sum() / max(len(ids), 1))),
+        "rmse_surface": float(np.sqrt(np.mean(covered**2))) if len(covered) else float("nan"),
+        "max_error_surface": float(np.abs(covered).max(initial=0.0)),
+        "error_90": float(np.quantile(np.abs(covered), 0.9)) if len(covered) else float("nan"),
+        "n_uncovered": len(distance) - len(covered),
+        **triangle_quality(mesh),
+    }
+
+
+def _detail_figures(record: PyramidRecord) -> dict[str, Any]:
+    """Histograms of the magnitudes, over bins of equal ratio that all levels share."""
+    magnitudes = [
+        np.linalg.norm(record.file_details(step.details), axis=1) for step in record.pyramid.steps
+    ]
+    together = np.concatenate(magnitudes) if magnitudes else np.empty(0)
+    together = together[together > 0]
+    if len(together) == 0:
+        return {"bin_edges": [], "levels": []}
+    low, high = np.quantile(together, 0.001), together.max()
+    edges = np.geomspace(low, max(high, low * 1.001), N_BINS + 1)
+    rows = []
+    for level, magnitude in enumerate(magnitudes):
+        inside = np.clip(magnitude, edges[0], edges[-1])
+        rows.append(
+            {
+                "level": level,
+                "n_details": len(magnitude),
+                "rms": float(np.sqrt(np.mean(magnitude**2))) if len(magnitude) else 0.0,
+                "median": float(np.median(magnitude)) if len(magnitude) else 0.0,
+                "largest": float(magnitude.max(initial=0.0)),
+                "counts": np.histogram(inside, edges)[0].tolist(),
+            }
+        )
+    return {"bin_edges": edges.tolist(), "levels": rows}
+
+
+def _error_figures(
+    record: PyramidRecord, finest: TriangleMesh, level: int, distance: FloatArray
+) -> dict[str, Any]:
+    """Where the error of a level is: by slope of the input, and its worst places."""
+    slope = surface_shape(finest).slope
+    known = np.isfinite(distance) & np.isfinite(slope)
+    total = float((distance[known] ** 2).sum())
+    classes = []
+    for low, high in pairwise(SLOPE_CLASSES):
+        inside = known & (slope >= low) & ((slope < high) | (high == SLOPE_CLASSES[-1]))
+        squared = float((distance[inside] ** 2).sum())
+        n_inside = int(np.count_nonzero(inside))
+        classes.append(
+            {
+                "slope_from": low,
+                "slope_to": high,
+                "vertex_share": n_inside / max(int(np.count_nonzero(known)), 1),
+                "rmse_surface": float(np.sqrt(squared / n_inside)) if n_inside else float("nan"),
+                "squared_error_share": squared / total if total > 0 else 0.0,
+            }
+        )
+    size = np.abs(np.where(known, distance, 0.0))
+    worst = _apart(finest.vertices[:, :2], size)
+    places = record.frame.to_file(finest.vertices[worst])
+    return {
+        "level": level,
+        "quantiles": {
+            str(q): float(np.quantile(size[known], q)) if known.any() else float("nan")
+            for q in (0.5, 0.9, 0.99, 1.0)
+        },
+        "bias": float(distance[known].mean()) if known.any() else float("nan"),
+        "by_slope": classes,
+        "worst": [
+            {"x": float(x), "y": float(y), "z": float(z), "error": float(distance[vertex])}
+            for (x, y, z), vertex in zip(places, worst, strict=True)
+            if size[vertex] > 0
+        ],
+    }
+
+
+def _apart(plan: FloatArray, size: FloatArray) -> list[int]:
+    """Return the vertices of the largest sizes that lie apart from each other."""
+    reach = WORST_REACH * float(np.ptp(plan, axis=0).max(initial=0.0))
+    places: list[int] = []
+    for vertex in np.argsort(-size, kind="stable")[:N_CANDIDATES]:
+        if len(places) == N_WORST:
+            break
+        if all(np.hypot(*(plan[vertex] - plan[other])) > reach for other in places):
+            places.append(int(vertex))
+    return places
+
+
+def _source_figures(record: PyramidRecord, finest: TriangleMesh) -> dict[str, Any]:
+    vertices = record.frame.to_file(finest.vertices)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    return {
+        "name": record.source_name.replace("\\", "/").rsplit("/", 1)[-1],
+        "kind": record.source.kind,
+        "is_exact": bool(record.source.is_exact),
+        "n_vertices": finest.n_vertices,
+        "n_faces": finest.n_faces,
+        "n_levels": record.pyramid.n_levels,
+        "channels": list(record.pyramid.channels),
+        "crs": record.system.name,
+        "vertical_unit": record.vertical_unit,
+        "x": [float(low[0]), float(high[0])],
+        "y": [float(low[1]), float(high[1])],
+        "z": [float(low[2]), float(high[2])],
+    }
+
+
+def _versions() -> dict[str, str]:
+    from importlib.metadata import PackageNotFoundError, version
+
+    versions = {"Python": platform.python_version()}
+    for package in ("terrain-wavelets", "numpy", "scipy", "numba", "PythonCDT"):
+        try:
+            versions[package] = version(package)
+        except PackageNotFoundError:
+            versions[package] = "not installed"
+    if versions["terrain-wavelets"] == "not installed":
+        from wavelet_core import __version__
+
+        versions["terrain-wavelets"] = __version__
+    return versions
