@@ -52,24 +52,24 @@ def write_input(path):
     write_dem(path, dem, CRS.from_epsg(4326).to_wkt())
 
 
-def rebuild(record):
+def rebuild(geo):
     """Return the meshes of all levels, in file coordinates, and the seconds each took."""
     meshes, seconds = {}, {}
     start = perf_counter()
-    for level, mesh in record.pyramid.meshes():
+    for level, mesh in geo.pyramid.meshes():
         seconds[level] = perf_counter() - start
-        meshes[level] = record.file_mesh(mesh)
+        meshes[level] = geo.file_mesh(mesh)
     return meshes, seconds
 
 
-def print_table(record, seconds):
+def print_table(geo, seconds):
     """Print size, errors and the time to rebuild each level, the finest first."""
     header = (
         f"{'level':>5} {'vertices':>9} {'triangles':>10} {'rmse_coefficients':>18}"
         f" {'rmse_surface':>13} {'max_error_surface':>18} {'seconds':>8}"
     )
     print(header)
-    for row in record.errors:
+    for row in geo.errors:
         print(
             f"{row.level:>5} {row.n_vertices:>9,} {row.n_faces:>10,}"
             f" {row.rmse_coefficients:>18.6f} {row.rmse_surface:>11.2f} m"
@@ -93,9 +93,9 @@ def shaded(elevation, cell, tint):
     return np.clip(colour * (0.35 + 0.85 * relief[..., None]), 0, 1)
 
 
-def draw(path, dem, record, meshes):
+def draw(path, dem, geo, meshes):
     """Draw the input and three levels, and where how much detail goes between them."""
-    pyramid, frame = record.pyramid, record.frame
+    pyramid, frame = geo.pyramid, geo.frame
     finest = pyramid.n_levels
     shown = [finest, *levels_near(pyramid, SHARES_SHOWN), 0]
     n_rows, n_columns = dem.geometry.shape
@@ -129,7 +129,7 @@ def draw(path, dem, record, meshes):
         color="#5c5954",
     )
 
-    errors = {row.level: row for row in record.errors}
+    errors = {row.level: row for row in geo.errors}
     for column, level in enumerate(shown):
         axes = figure.add_subplot(grid[0, column])
         surface = (
@@ -144,7 +144,7 @@ def draw(path, dem, record, meshes):
             note += f" ({share:.1f} %),  RMSE {row.rmse_surface:.1f} m"
         label(axes, name, note, extent, aspect)
 
-    signature(figure.add_subplot(grid[1, 0]), record)
+    signature(figure.add_subplot(grid[1, 0]), geo)
     relief = shaded(dem.values.astype(float), cell, tint=False)
     layers = dict(pyramid.details())
     groups = [[layers[level] for level in range(coarse, fine)] for fine, coarse in pairwise(shown)]
@@ -204,9 +204,9 @@ def label(axes, name, note, extent, aspect):
     axes.text(0, 1.018, note, transform=axes.transAxes, fontsize=10, color="#5c5954")
 
 
-def signature(axes, record):
+def signature(axes, geo):
     """Draw how much relief lives at each scale: rms detail against the spacing of vertices."""
-    pyramid = record.pyramid
+    pyramid = geo.pyramid
     mesh = pyramid.mesh(pyramid.n_levels)
     area = np.prod(np.ptp(mesh.vertices[:, :2], axis=0))
     counts = np.array([pyramid.n_vertices(level) for level in range(pyramid.n_levels + 1)])
@@ -256,14 +256,14 @@ def main(folder):
     megabytes = pyramid_file.stat().st_size / 1e6
     print(f"{pyramid_file}: written in {seconds:.1f} s, compiling included; {megabytes:.1f} MB")
 
-    record = read_pyramid(pyramid_file)
-    meshes, seconds_of_level = rebuild(record)
-    print_table(record, seconds_of_level)
+    geo = read_pyramid(pyramid_file)
+    meshes, seconds_of_level = rebuild(geo)
+    print_table(geo, seconds_of_level)
     dem, _ = read_dem(raster)
-    identical = np.array_equal(record.restore().values, dem.values)
+    identical = np.array_equal(geo.restore().values, dem.values)
     print(f"reconstruction: {'identical to the input, bit for bit' if identical else 'DIFFERS'}")
 
-    draw(picture, dem, record, meshes)
+    draw(picture, dem, geo, meshes)
     print(f"{picture}: the input beside three levels, and the size of the details between them")
     return 0 if identical else 1
 

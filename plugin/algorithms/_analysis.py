@@ -79,16 +79,16 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
             **self.more_options(parameters, context, terrain),
         )
         feedback.setProgressText(self.tr("Measuring the errors of every level"))
-        record = terrain.record(pyramid)
+        geo = terrain.geo_pyramid(pyramid)
         require_running(feedback)
-        record = record.with_errors(progress(feedback, 0.55, 0.75))
-        pyramids.log_levels(record, feedback)
+        geo = geo.with_errors(progress(feedback, 0.55, 0.75))
+        pyramids.log_levels(geo, feedback)
         feedback.setProgressText(self.tr("Writing the pyramid"))
-        pyramids.save(record, output, feedback, 0.75, 0.95)
-        results = {"OUTPUT": output, **pyramids.figures(record)}
+        pyramids.save(geo, output, feedback, 0.75, 0.95)
+        results = {"OUTPUT": output, **pyramids.figures(geo)}
         if parameters.get("COARSE_TIN"):
             results["COARSE_TIN"] = tin_output.write_tin(
-                self, parameters, "COARSE_TIN", context, record, 0, feedback
+                self, parameters, "COARSE_TIN", context, geo, 0, feedback
             )
         feedback.setProgress(100)
         return results

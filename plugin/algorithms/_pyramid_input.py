@@ -38,12 +38,12 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
         """Return the path of the pyramid file, without the name of a layer in it."""
         return self.parameterAsString(parameters, "INPUT", context).split("|")[0]
 
-    def record(self, parameters, context, feedback):
-        """Return the ``PyramidRecord`` in the file."""
+    def geo(self, parameters, context, feedback):
+        """Return the ``GeoPyramid`` in the file."""
         from ..parameters.pyramid import load
 
         feedback.setProgressText(self.tr("Reading the pyramid"))
-        record = load(self.pyramid_path(parameters, context))
-        for line in record.history:
+        geo = load(self.pyramid_path(parameters, context))
+        for line in geo.history:
             feedback.pushInfo(self.tr("Changed since its analysis: {}").format(line))
-        return record
+        return geo

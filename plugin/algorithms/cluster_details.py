@@ -209,11 +209,11 @@ class ClusterDetails(PyramidAlgorithm):
         """Find or learn the labels, then write what was asked for."""
         from wavelet_gis.workflows.classify import cluster_summary
 
-        record = self.record(parameters, context, feedback)
+        geo = self.geo_pyramid(parameters, context, feedback)
         is_learned = self._teacher(parameters, context) != TEACHERS[0]
         find = self._classes if is_learned else self._clusters
-        labels, confidence, results = find(parameters, context, record, feedback)
-        summary = cluster_summary(record, labels)
+        labels, confidence, results = find(parameters, context, geo, feedback)
+        summary = cluster_summary(geo, labels)
         word = self.tr("class") if is_learned else self.tr("cluster")
         for row in summary["clusters"]:
             feedback.pushInfo(
@@ -221,9 +221,7 @@ class ClusterDetails(PyramidAlgorithm):
             )
         results["N_CLUSTERS"] = len(summary["clusters"])
         name = "class" if is_learned else "cluster"
-        results.update(
-            self._written(parameters, context, record, labels, confidence, name, feedback)
-        )
+        results.update(self._written(parameters, context, geo, labels, confidence, name, feedback))
         path = self.parameterAsFileOutput(parameters, "SUMMARY", context)
         if path:
             from wavelet_gis.io.atomic import new_file
@@ -233,7 +231,7 @@ class ClusterDetails(PyramidAlgorithm):
             results["SUMMARY"] = path
         return results
 
-    def _clusters(self, parameters, context, record, feedback):
+    def _clusters(self, parameters, context, geo, feedback):
         from wavelet_core.features.signature import energy_signature
         from wavelet_gis.workflows.classify import cluster_vertices
 
@@ -242,7 +240,7 @@ class ClusterDetails(PyramidAlgorithm):
         text = self.parameterAsString(parameters, "CHANNELS", context)
         channels = tuple(name.strip() for name in text.split(",") if name.strip())
         feedback.setProgressText(self.tr("Gathering the spectrum of each vertex"))
-        signature = energy_signature(record.pyramid, channels, progress(feedback, 0.05, 0.5))
+        signature = energy_signature(geo.pyramid, channels, progress(feedback, 0.05, 0.5))
         feedback.setProgressText(self.tr("Clustering"))
         count = parameters.get("COUNT")
         clusters = cluster_vertices(
@@ -255,7 +253,7 @@ class ClusterDetails(PyramidAlgorithm):
         feedback.setProgress(80)
         return clusters.labels, clusters.confidence, {}
 
-    def _classes(self, parameters, context, record, feedback):
+    def _classes(self, parameters, context, geo, feedback):
         import numpy as np
 
         from wavelet_core.features.signature import plain_features, scale_features
@@ -263,15 +261,15 @@ class ClusterDetails(PyramidAlgorithm):
 
         from ..qgis_io.crs_and_progress import progress, require_running
 
-        given = self._given(parameters, context, record, feedback)
+        given = self._given(parameters, context, geo, feedback)
         feedback.setProgressText(self.tr("Gathering the spectrum of each vertex"))
-        scales = scale_features(record.pyramid, progress(feedback, 0.05, 0.4))
-        features = scales.joined_to(plain_features(record.pyramid))
+        scales = scale_features(geo.pyramid, progress(feedback, 0.05, 0.4))
+        features = scales.joined_to(plain_features(geo.pyramid))
         seed = self.parameterAsInt(parameters, "SEED", context)
         results = {}
         if self.parameterAsBool(parameters, "VALIDATE", context):
             feedback.setProgressText(self.tr("Predicting blocks of the map from the others"))
-            plan = record.pyramid.synthesise().vertices[:, :2]
+            plan = geo.pyramid.synthesise().vertices[:, :2]
             validation = validate_classes(features, given, spatial_folds(plan), seed)
             results["ACCURACY"] = validation.accuracy
             feedback.pushInfo(self.tr("Accuracy: {:.1f} %").format(100 * validation.accuracy))
@@ -283,18 +281,18 @@ class ClusterDetails(PyramidAlgorithm):
         feedback.setProgress(80)
         return labels, np.where(is_given, 1.0, classes.confidence), results
 
-    def _given(self, parameters, context, record, feedback):
+    def _given(self, parameters, context, geo, feedback):
         if self._teacher(parameters, context) == TEACHERS[2]:
             from wavelet_gis.workflows.labels import labels_from_las
 
-            return labels_from_las(record, self._unlabelled(parameters, context))
+            return labels_from_las(geo, self._unlabelled(parameters, context))
         from ..parameters.pyramid import crs_of
         from ..qgis_io.training import labels_inside
 
         field = self.parameterAsString(parameters, "CLASS_FIELD", context)
-        positions = record.frame.to_file(record.pyramid.synthesise().vertices)
+        positions = geo.frame.to_file(geo.pyramid.synthesise().vertices)
         given = labels_inside(
-            self.training, field, positions, crs_of(record), context.transformContext(), feedback
+            self.training, field, positions, crs_of(geo), context.transformContext(), feedback
         )
         if (given < 0).all():
             raise QgsProcessingException(
@@ -302,7 +300,7 @@ class ClusterDetails(PyramidAlgorithm):
             )
         return given
 
-    def _written(self, parameters, context, record, labels, confidence, name, feedback):
+    def _written(self, parameters, context, geo, labels, confidence, name, feedback):
         from wavelet_gis.products.label_layer import label_layer
         from wavelet_gis.products.vertex_raster import label_band
 
@@ -315,14 +313,14 @@ class ClusterDetails(PyramidAlgorithm):
         path = self.parameterAsOutputLayer(parameters, "RASTER", context)
         if path:
             size = cell_size(self, parameters, context)
-            bands = label_band(record, record.pyramid.synthesise(), labels, name, size)
-            write_bands(path, bands, crs_of(record), feedback)
+            bands = label_band(geo, geo.pyramid.synthesise(), labels, name, size)
+            write_bands(path, bands, crs_of(geo), feedback)
             styles.style_output(context, path, styles.style_labels)
             results["RASTER"] = path
         if parameters.get("OUTPUT"):
-            layer = label_layer(record, labels, confidence, name)
+            layer = label_layer(geo, labels, confidence, name)
             destination = tin_output.write_layer(
-                self, parameters, "OUTPUT", context, record, layer, feedback
+                self, parameters, "OUTPUT", context, geo, layer, feedback
             )
             styles.style_output(context, destination, partial(styles.apply_qml, qml=layer.style))
             results["OUTPUT"] = destination

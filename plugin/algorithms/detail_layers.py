@@ -117,13 +117,13 @@ class DetailLayers(PyramidAlgorithm):
         from ..qgis_io.crs_and_progress import require_running
         from ..ui import layer_styles as styles
 
-        record = self.record(parameters, context, feedback)
-        n_levels = record.pyramid.n_levels
+        geo = self.geo_pyramid(parameters, context, feedback)
+        n_levels = geo.pyramid.n_levels
         if n_levels == 0:
             raise QgsProcessingException(
                 self.tr("This pyramid has no level, so it has no details.")
             )
-        first = checked_level(record, self.parameterAsInt(parameters, "FIRST_LEVEL", context))
+        first = checked_level(geo, self.parameterAsInt(parameters, "FIRST_LEVEL", context))
         last = n_levels - 1
         if parameters.get("LAST_LEVEL") is not None:
             last = min(self.parameterAsInt(parameters, "LAST_LEVEL", context), last)
@@ -136,7 +136,7 @@ class DetailLayers(PyramidAlgorithm):
         smallest = self.parameterAsDouble(parameters, "MIN_MAGNITUDE", context)
         sink, destination = None, None
         n_details, largest = 0, 0.0
-        for level, layer in enumerate(detail_layers(record)):
+        for level, layer in enumerate(detail_layers(geo)):
             require_running(feedback)
             if sink is None:  # all levels have the same fields
                 sink, destination = self.parameterAsSink(
@@ -145,7 +145,7 @@ class DetailLayers(PyramidAlgorithm):
                     context,
                     vectors.fields_of(layer),
                     vectors.wkb_type_of(layer),
-                    crs_of(record),
+                    crs_of(geo),
                 )
                 if sink is None:
                     raise QgsProcessingException(self.invalidSinkError(parameters, "OUTPUT"))
@@ -161,10 +161,10 @@ class DetailLayers(PyramidAlgorithm):
         styles.style_output(context, destination, styles.style_details)
         results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
         if parameters.get("ENERGY"):
-            results["ENERGY"] = self._write_energy(parameters, context, record, feedback)
+            results["ENERGY"] = self._write_energy(parameters, context, geo, feedback)
         return results
 
-    def _write_energy(self, parameters, context, record, feedback):
+    def _write_energy(self, parameters, context, geo, feedback):
         from wavelet_gis.products.vertex_raster import value_bands
         from wavelet_gis.products.vertex_tables import band_names, energy_columns
 
@@ -174,9 +174,9 @@ class DetailLayers(PyramidAlgorithm):
 
         path = self.parameterAsOutputLayer(parameters, "ENERGY", context)
         feedback.setProgressText(self.tr("Gathering the energy of each level"))
-        columns = energy_columns(record, progress=progress(feedback, 0.6, 0.9))
-        finest = record.pyramid.synthesise()
+        columns = energy_columns(geo, progress=progress(feedback, 0.6, 0.9))
+        finest = geo.pyramid.synthesise()
         size = cell_size(self, parameters, context)
-        bands = value_bands(record, finest, columns, band_names(record), size)
-        write_bands(path, bands, crs_of(record), feedback)
+        bands = value_bands(geo, finest, columns, band_names(geo), size)
+        write_bands(path, bands, crs_of(geo), feedback)
         return path

@@ -116,34 +116,34 @@ class ExtractLevel(PyramidAlgorithm):
         from ..parameters.pyramid import checked_level, level_figures
         from ..qgis_io.crs_and_progress import require_running
 
-        record = self.record(parameters, context, feedback)
-        level = checked_level(record, self.parameterAsInt(parameters, "LEVEL", context))
+        geo = self.geo_pyramid(parameters, context, feedback)
+        level = checked_level(geo, self.parameterAsInt(parameters, "LEVEL", context))
         feedback.setProgress(30)
         feedback.setProgressText(self.tr("Synthesising level {}").format(level))
-        mesh = record.pyramid.mesh(level)
+        mesh = geo.pyramid.mesh(level)
         require_running(feedback)
         feedback.setProgress(60)
         results = {
             "N_VERTICES": mesh.n_vertices,
             "N_FACES": mesh.n_faces,
-            **level_figures(record, level),
+            **level_figures(geo, level),
         }
         n_figures = len(results)
         if parameters.get("TIN"):
             results["TIN"] = tin_output.write_tin(
-                self, parameters, "TIN", context, record, level, feedback
+                self, parameters, "TIN", context, geo, level, feedback
             )
         if parameters.get("VERTICES"):
             results["VERTICES"] = tin_output.write_vertices(
-                self, parameters, "VERTICES", context, record, level, feedback
+                self, parameters, "VERTICES", context, geo, level, feedback
             )
         if parameters.get("RASTER"):
             results["RASTER"] = mesh_output.write_raster(
-                self, parameters, "RASTER", context, record, mesh, feedback
+                self, parameters, "RASTER", context, geo, mesh, feedback
             )
         if parameters.get("MESH"):
             results["MESH"] = mesh_output.write_mesh_file(
-                self, parameters, "MESH", context, record, mesh
+                self, parameters, "MESH", context, geo, mesh
             )
         if len(results) == n_figures:
             raise QgsProcessingException(

@@ -213,12 +213,12 @@ class FilterLevels(PyramidAlgorithm):
         from ..parameters import pyramid as pyramids
         from ..qgis_io.crs_and_progress import progress, require_running
 
-        before = self.record(parameters, context, feedback)
-        record, results = before, {}
+        before = self.geo_pyramid(parameters, context, feedback)
+        geo, results = before, {}
         if self.parameterAsBool(parameters, "DENOISE", context):
             feedback.setProgressText(self.tr("Taking out the noise"))
-            record, sigmas = denoised_record(
-                record,
+            geo, sigmas = denoised_record(
+                geo,
                 self._number(parameters, "SIGMA_OF_NOISE", self.parameterAsDouble, context),
                 channels=self._channels(parameters, context),
                 n_pyramids=self.parameterAsInt(parameters, "PYRAMIDS", context),
@@ -226,29 +226,29 @@ class FilterLevels(PyramidAlgorithm):
             )
             results["SIGMA"] = next(iter(sigmas.values()))
         gains = chosen_gains(
-            record,
+            geo,
             self._gains(parameters, context),
-            levels=self._level_bounds(parameters, context, record),
+            levels=self._level_bounds(parameters, context, geo),
             metres=self._sizes(parameters, context),
         )
         drops_coarse = self.parameterAsBool(parameters, "DROP_COARSE", context)
         if gains or drops_coarse:
-            record = scaled_record(record, gains, drops_coarse=drops_coarse)
+            geo = scaled_record(geo, gains, drops_coarse=drops_coarse)
         require_running(feedback)
-        for line in record.history[len(before.history) :]:
+        for line in geo.history[len(before.history) :]:
             feedback.pushInfo(line)
-        results["RMS_CHANGE"], results["MAX_CHANGE"] = change_between(before, record)
+        results["RMS_CHANGE"], results["MAX_CHANGE"] = change_between(before, geo)
         n_figures = len(results)
-        finest = record.pyramid.synthesise()
+        finest = geo.pyramid.synthesise()
         path = self.parameterAsFileOutput(parameters, "OUTPUT", context)
         if path:
-            record = record.with_errors(progress(feedback, 0.7, 0.75))
-            pyramids.save(record, path, feedback, 0.75, 0.85)
+            geo = geo.with_errors(progress(feedback, 0.7, 0.75))
+            pyramids.save(geo, path, feedback, 0.75, 0.85)
             results["OUTPUT"] = path
-        results.update(write_restored(self, parameters, context, record, finest, feedback))
-        results.update(self._difference(parameters, context, before, record, feedback))
+        results.update(write_restored(self, parameters, context, geo, finest, feedback))
+        results.update(self._difference(parameters, context, before, geo, feedback))
         if len(results) == n_figures:
-            raise nothing_written(record.source.kind)
+            raise nothing_written(geo.source.kind)
         return results
 
     def _difference(self, parameters, context, before, after, feedback):
@@ -274,12 +274,12 @@ class FilterLevels(PyramidAlgorithm):
     def _levels(self, parameters, context):
         return [n for n in ("FIRST_LEVEL", "LAST_LEVEL") if parameters.get(n) is not None]
 
-    def _level_bounds(self, parameters, context, record):
+    def _level_bounds(self, parameters, context, geo):
         if not self._levels(parameters, context):
             return None
         first = self._number(parameters, "FIRST_LEVEL", self.parameterAsInt, context)
         last = self._number(parameters, "LAST_LEVEL", self.parameterAsInt, context)
-        return first or 0, record.pyramid.n_levels - 1 if last is None else last
+        return first or 0, geo.pyramid.n_levels - 1 if last is None else last
 
     def _sizes(self, parameters, context):
         smallest = self._number(parameters, "SMALLEST_SIZE", self.parameterAsDouble, context)

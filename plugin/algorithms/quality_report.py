@@ -91,13 +91,13 @@ class QualityReport(PyramidAlgorithm):
         from ..parameters.pyramid import figures
         from ..qgis_io.crs_and_progress import progress
 
-        record = self.record(parameters, context, feedback)
+        geo = self.geo_pyramid(parameters, context, feedback)
         feedback.setProgressText(self.tr("Measuring and drawing"))
         page, numbers = report_page(
-            record, self._levels(parameters, context), progress(feedback, 0.1, 0.95)
+            geo, self._levels(parameters, context), progress(feedback, 0.1, 0.95)
         )
         texts = {"OUTPUT": page, "FIGURES": json.dumps(numbers, indent=1, allow_nan=False)}
-        measured = record if record.errors else record.with_errors(progress(feedback, 0.95, 1.0))
+        measured = geo if geo.errors else geo.with_errors(progress(feedback, 0.95, 1.0))
         results = figures(measured)
         for name, text in texts.items():
             path = self.parameterAsFileOutput(parameters, name, context)

@@ -59,19 +59,19 @@ class Reconstruct(PyramidAlgorithm):
         """Synthesise, restore, write what was asked for."""
         from ..qgis_io.crs_and_progress import require_running
 
-        record = self.record(parameters, context, feedback)
+        geo = self.geo_pyramid(parameters, context, feedback)
         feedback.setProgress(30)
         feedback.setProgressText(self.tr("Synthesising the finest level"))
-        finest = record.pyramid.synthesise()
+        finest = geo.pyramid.synthesise()
         require_running(feedback)
         feedback.setProgress(60)
-        results = write_restored(self, parameters, context, record, finest, feedback)
+        results = write_restored(self, parameters, context, geo, finest, feedback)
         if not results:
-            raise nothing_written(record.source.kind)
-        return {"N_VERTICES": finest.n_vertices, "EXACT": _exactness(record), **results}
+            raise nothing_written(geo.source.kind)
+        return {"N_VERTICES": finest.n_vertices, "EXACT": _exactness(geo), **results}
 
 
-def _exactness(record) -> str:
-    if record.source.is_exact:
+def _exactness(geo) -> str:
+    if geo.source.is_exact:
         return "yes"
-    return "no" if record.history else "to rounding"
+    return "no" if geo.history else "to rounding"

@@ -159,34 +159,34 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
             **self._rule(parameters, context, terrain.frame.z_scale),
             **design_options(self, parameters, context),
         )
-        record = terrain.record(pyramid)
+        geo = terrain.geo_pyramid(pyramid)
         require_running(feedback)
-        coarsest = record.pyramid.mesh(0)
+        coarsest = geo.pyramid.mesh(0)
         is_fitted = self.parameterAsBool(parameters, "FIT", context)
         if is_fitted and pyramid.parameters["norm"] == "rms":
             coarsest = fitted(coarsest, terrain.mesh)
         results = {
             "N_VERTICES": coarsest.n_vertices,
             "N_FACES": coarsest.n_faces,
-            **self._errors(record, coarsest, terrain),
+            **self._errors(geo, coarsest, terrain),
         }
         n_figures = len(results)
         path = self.parameterAsFileOutput(parameters, "OUTPUT", context)
         if path:
-            measured = record.with_errors(progress(feedback, 0.7, 0.75))
+            measured = geo.with_errors(progress(feedback, 0.7, 0.75))
             pyramids.save(measured, path, feedback, 0.75, 0.9)
             results["OUTPUT"] = path
         if parameters.get("TIN"):
             results["TIN"] = tin_output.write_tin(
-                self, parameters, "TIN", context, record, 0, feedback, coarsest
+                self, parameters, "TIN", context, geo, 0, feedback, coarsest
             )
         if parameters.get("RASTER"):
             results["RASTER"] = mesh_output.write_raster(
-                self, parameters, "RASTER", context, record, coarsest, feedback
+                self, parameters, "RASTER", context, geo, coarsest, feedback
             )
         if parameters.get("MESH"):
             results["MESH"] = mesh_output.write_mesh_file(
-                self, parameters, "MESH", context, record, coarsest
+                self, parameters, "MESH", context, geo, coarsest
             )
         if len(results) == n_figures:
             raise QgsProcessingException(
@@ -202,12 +202,12 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
             return {"max_error": error * z_scale}
         return {"max_rms": self.parameterAsDouble(parameters, "RMSE", context) * z_scale}
 
-    def _errors(self, record, coarsest, terrain):
+    def _errors(self, geo, coarsest, terrain):
         import numpy as np
 
         from wavelet_core.mesh.location import surface_errors
 
-        errors = surface_errors(coarsest, terrain.mesh.vertices) / record.frame.z_scale
+        errors = surface_errors(coarsest, terrain.mesh.vertices) / geo.frame.z_scale
         covered = errors[np.isfinite(errors)]
         return {
             "RMSE_SURFACE": float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,

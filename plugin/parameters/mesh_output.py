@@ -55,10 +55,10 @@ def mesh_packages(algorithm, parameters, context) -> tuple[dependencies.Package,
     return PACKAGES.get(_suffix(path), ())
 
 
-def write_raster(algorithm, parameters, name, context, record, mesh, feedback) -> str:
-    """Write a mesh of the record (in the working frame) as a raster and return its path.
+def write_raster(algorithm, parameters, name, context, geo, mesh, feedback) -> str:
+    """Write a mesh of the pyramid (in the working frame) as a raster and return its path.
 
-    The grid is that of the DEM the record came from, or, with CELL_SIZE, one over the mesh.
+    The grid is that of the DEM the pyramid came from, or, with CELL_SIZE, one over the mesh.
     """
     from wavelet_gis.products.level_raster import surface_dem
 
@@ -66,19 +66,19 @@ def write_raster(algorithm, parameters, name, context, record, mesh, feedback) -
 
     path = algorithm.parameterAsOutputLayer(parameters, name, context)
     size = cell_size(algorithm, parameters, context)
-    write_dem(path, surface_dem(record, mesh, cell_size=size), crs_of(record), feedback)
+    write_dem(path, surface_dem(geo, mesh, cell_size=size), crs_of(geo), feedback)
     styles.style_output(context, path, styles.style_hillshade)
     return path
 
 
-def write_mesh_file(algorithm, parameters, name, context, record, mesh) -> str:
-    """Write a mesh of the record as a mesh file; a 2DM opens as a layer if there is a project."""
+def write_mesh_file(algorithm, parameters, name, context, geo, mesh) -> str:
+    """Write a mesh of the pyramid as a mesh file; a 2DM opens as a layer if there is a project."""
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.meshes import write_mesh
 
     path = algorithm.parameterAsFileOutput(parameters, name, context)
     with new_file(path, overwrite=True) as scratch:
-        write_mesh(scratch, record.file_mesh(mesh), record.system.wkt)
+        write_mesh(scratch, geo.file_mesh(mesh), geo.system.wkt)
     if _suffix(path) == ".2dm" and context.project() is not None:
         details = QgsProcessingContext.LayerDetails(
             os.path.splitext(os.path.basename(path))[0],

@@ -16,15 +16,15 @@ from ..ui.translation import tr
 
 
 def load(path: str):
-    """Return the ``PyramidRecord`` in a pyramid file."""
+    """Return the ``GeoPyramid`` in a pyramid file."""
     from wavelet_gis.io.pyramid_file import read_pyramid
 
     # A layer of the file may have been handed on by a model, as 'file.gpkg|layername=coarse_tin'.
     return read_pyramid(path.split("|")[0])
 
 
-def save(record, path: str, feedback, start: float, stop: float) -> None:
-    """Write a record with its layers as a GeoPackage, whole or not at all; it replaces another."""
+def save(geo, path: str, feedback, start: float, stop: float) -> None:
+    """Write a pyramid with its layers as a GeoPackage, whole or not at all; it replaces another."""
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.pyramid_file import write_pyramid
     from wavelet_gis.products.layers import coarse_layers, detail_layers
@@ -33,21 +33,21 @@ def save(record, path: str, feedback, start: float, stop: float) -> None:
 
     middle = (start + stop) / 2
     with new_file(path, overwrite=True) as scratch:
-        write_pyramid(scratch, record, progress(feedback, start, middle))
-        layers = chain(coarse_layers(record), detail_layers(record))
-        add_layers(scratch, layers, layer_wkt(record), feedback)
+        write_pyramid(scratch, geo, progress(feedback, start, middle))
+        layers = chain(coarse_layers(geo), detail_layers(geo))
+        add_layers(scratch, layers, layer_wkt(geo), feedback)
     progress(feedback, middle, stop)(1.0)
 
 
-def crs_of(record) -> QgsCoordinateReferenceSystem:
-    """Return the CRS of a record's input; an invalid one where it had none."""
-    wkt = layer_wkt(record)
+def crs_of(geo) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of a pyramid's input; an invalid one where it had none."""
+    wkt = layer_wkt(geo)
     return QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
 
 
-def layer_wkt(record) -> str | None:
+def layer_wkt(geo) -> str | None:
     """Return the CRS for layers; None also for a geocentric one, in which no map is drawn."""
-    wkt = record.system.wkt
+    wkt = geo.system.wkt
     return None if wkt is None or is_geocentric(wkt) else wkt
 
 
@@ -58,7 +58,7 @@ def cell_size(algorithm, parameters, context):
     return algorithm.parameterAsDouble(parameters, "CELL_SIZE", context) or None
 
 
-def checked_level(record, level: int) -> int:
+def checked_level(geo, level: int) -> int:
     """Return a level that the pyramid has.
 
     Raises
@@ -66,7 +66,7 @@ def checked_level(record, level: int) -> int:
     QgsProcessingException
         When there is no such level.
     """
-    n_levels = record.pyramid.n_levels
+    n_levels = geo.pyramid.n_levels
     if not 0 <= level <= n_levels:
         raise QgsProcessingException(
             tr("There is no level {}; the levels of this pyramid are 0 (coarsest) to {}.").format(
@@ -97,11 +97,11 @@ def add_figure_outputs(algorithm) -> None:
         algorithm.addOutput(QgsProcessingOutputNumber(name, description))
 
 
-def figures(record) -> dict:
-    """Return sizes and errors of a record whose errors have been computed."""
-    finest, coarsest = record.errors[0], record.errors[-1]
+def figures(geo) -> dict:
+    """Return sizes and errors of a pyramid whose errors have been computed."""
+    finest, coarsest = geo.errors[0], geo.errors[-1]
     return {
-        "N_LEVELS": record.pyramid.n_levels,
+        "N_LEVELS": geo.pyramid.n_levels,
         "N_VERTICES": finest.n_vertices,
         "N_FACES": finest.n_faces,
         "COARSE_VERTICES": coarsest.n_vertices,
@@ -112,9 +112,9 @@ def figures(record) -> dict:
     }
 
 
-def level_figures(record, level: int) -> dict:
+def level_figures(geo, level: int) -> dict:
     """Return the errors of a level as the file tells them; empty where it does not."""
-    for errors in record.errors or ():
+    for errors in geo.errors or ():
         if errors.level == level:
             return {
                 "RMSE_SURFACE": errors.rmse_surface,
@@ -123,10 +123,10 @@ def level_figures(record, level: int) -> dict:
     return {}
 
 
-def log_levels(record, feedback) -> None:
+def log_levels(geo, feedback) -> None:
     """Write the table of levels to the log."""
     feedback.pushInfo(tr("level   vertices  triangles  RMSE of surface  largest error"))
-    for errors in record.errors:
+    for errors in geo.errors:
         feedback.pushInfo(
             f"{errors.level:5d} {errors.n_vertices:10d} {errors.n_faces:10d} "
             f"{errors.rmse_surface:16.4f} {errors.max_error_surface:14.4f}"

@@ -43,15 +43,15 @@ def add_restored_outputs(algorithm, dem_name, cloud_name, tin_name) -> None:
     )
 
 
-def write_restored(algorithm, parameters, context, record, finest, feedback) -> dict:
-    """Write what was asked for and fits the record.
+def write_restored(algorithm, parameters, context, geo, finest, feedback) -> dict:
+    """Write what was asked for and fits the pyramid.
 
     Parameters
     ----------
     algorithm : TerrainWaveletsAlgorithm
     parameters : dict
     context : QgsProcessingContext
-    record : PyramidRecord
+    geo : GeoPyramid
     finest : TriangleMesh
         Its finest level.
     feedback : QgsProcessingFeedback
@@ -64,13 +64,13 @@ def write_restored(algorithm, parameters, context, record, finest, feedback) -> 
     from . import tin_output
 
     results = {}
-    if record.source.kind == "raster":
-        results.update(_write_dem(algorithm, parameters, context, record, finest, feedback))
-    elif record.source.kind == "points":
-        results.update(_write_cloud(algorithm, parameters, context, record, finest))
+    if geo.source.kind == "raster":
+        results.update(_write_dem(algorithm, parameters, context, geo, finest, feedback))
+    elif geo.source.kind == "points":
+        results.update(_write_cloud(algorithm, parameters, context, geo, finest))
     if parameters.get("TIN"):
         results["TIN"] = tin_output.write_tin(
-            algorithm, parameters, "TIN", context, record, record.pyramid.n_levels, feedback
+            algorithm, parameters, "TIN", context, geo, geo.pyramid.n_levels, feedback
         )
     return results
 
@@ -89,7 +89,7 @@ def nothing_written(kind: str) -> QgsProcessingException:
     return QgsProcessingException(text)
 
 
-def _write_dem(algorithm, parameters, context, record, finest, feedback) -> dict:
+def _write_dem(algorithm, parameters, context, geo, finest, feedback) -> dict:
     from ..qgis_io import raster_writer as raster_output
     from ..ui import layer_styles as styles
     from .pyramid import crs_of
@@ -97,13 +97,13 @@ def _write_dem(algorithm, parameters, context, record, finest, feedback) -> dict
     path = algorithm.parameterAsOutputLayer(parameters, "DEM", context)
     if not path:
         return {}
-    dem = record.source.restore(finest, record.frame)
-    raster_output.write_dem(path, dem, crs_of(record), feedback)
+    dem = geo.source.restore(finest, geo.frame)
+    raster_output.write_dem(path, dem, crs_of(geo), feedback)
     styles.style_output(context, path, styles.style_hillshade)
     return {"DEM": path}
 
 
-def _write_cloud(algorithm, parameters, context, record, finest) -> dict:
+def _write_cloud(algorithm, parameters, context, geo, finest) -> dict:
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.las import write_cloud
 
@@ -111,5 +111,5 @@ def _write_cloud(algorithm, parameters, context, record, finest) -> dict:
     if not path:
         return {}
     with new_file(path, overwrite=True) as scratch:
-        write_cloud(scratch, record.source.restore(finest, record.frame))
+        write_cloud(scratch, geo.source.restore(finest, geo.frame))
     return {"POINT_CLOUD": path}

@@ -11,36 +11,36 @@ from ..ui import layer_styles as styles
 from .pyramid import crs_of
 
 
-def write_tin(algorithm, parameters, name, context, record, level, feedback, mesh=None) -> str:
+def write_tin(algorithm, parameters, name, context, geo, level, feedback, mesh=None) -> str:
     """Write the triangles of a level to the sink ``name`` and return where they are.
 
     ``mesh`` is the level with other heights, if they were fitted.
     """
-    tin, _ = _level_layers(record, level) if mesh is None else _layers_of(record, level, mesh)
-    destination = write_layer(algorithm, parameters, name, context, record, tin, feedback)
+    tin, _ = _level_layers(geo, level) if mesh is None else _layers_of(geo, level, mesh)
+    destination = write_layer(algorithm, parameters, name, context, geo, tin, feedback)
     styles.style_output(context, destination, partial(styles.apply_qml, qml=tin.style))
     return destination
 
 
-def write_vertices(algorithm, parameters, name, context, record, level, feedback) -> str:
+def write_vertices(algorithm, parameters, name, context, geo, level, feedback) -> str:
     """Write the vertices of a level, with their attributes, to the sink ``name``."""
-    _, vertices = _level_layers(record, level)
-    return write_layer(algorithm, parameters, name, context, record, vertices, feedback)
+    _, vertices = _level_layers(geo, level)
+    return write_layer(algorithm, parameters, name, context, geo, vertices, feedback)
 
 
-def _level_layers(record, level):
+def _level_layers(geo, level):
     from wavelet_gis.products.layers import coarse_layers
 
-    return coarse_layers(record, level)
+    return coarse_layers(geo, level)
 
 
-def _layers_of(record, level, mesh):
+def _layers_of(geo, level, mesh):
     from wavelet_gis.products.layers import tin_layers
 
-    return tin_layers(record, mesh, record.pyramid.vertex_ids(level))
+    return tin_layers(geo, mesh, geo.pyramid.vertex_ids(level))
 
 
-def write_layer(algorithm, parameters, name, context, record, layer, feedback) -> str:
+def write_layer(algorithm, parameters, name, context, geo, layer, feedback) -> str:
     """Write a ``wavelet_gis.products.layers.Layer`` to the sink ``name`` and return where it is."""
     sink, destination = algorithm.parameterAsSink(
         parameters,
@@ -48,7 +48,7 @@ def write_layer(algorithm, parameters, name, context, record, layer, feedback) -
         context,
         vectors.fields_of(layer),
         vectors.wkb_type_of(layer),
-        crs_of(record),
+        crs_of(geo),
     )
     if sink is None:
         raise QgsProcessingException(algorithm.invalidSinkError(parameters, name))

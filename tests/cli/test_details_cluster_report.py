@@ -81,8 +81,8 @@ def test_components_sum_with_the_base_to_the_dem(run, folder):
     from wavelet_gis.io.pyramid_file import read_pyramid
 
     _, path, _ = run("details", "d.gpkg", "c.tif", "--what", "component")
-    record = read_pyramid(folder / "d.gpkg")
-    base = band_components(record.pyramid).base.reshape(40, 50)
+    geo = read_pyramid(folder / "d.gpkg")
+    base = band_components(geo.pyramid).base.reshape(40, 50)
     with rasterio.open(path) as dataset, rasterio.open(folder / "dem.tif") as dem:
         np.testing.assert_allclose(base + dataset.read().sum(axis=0), dem.read(1), atol=1e-3)
 

@@ -29,16 +29,16 @@ def las(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def raster_record(tif):
-    """Return the record of the DEM."""
+    """Return the pyramid of the DEM."""
     terrain = open_terrain(tif)
-    return terrain.record(analyse(terrain.mesh, levels=4)).with_errors()
+    return terrain.geo_pyramid(analyse(terrain.mesh, levels=4)).with_errors()
 
 
 @pytest.fixture(scope="session")
 def cloud_record(las):
-    """Return the record of the cloud, with attributes."""
+    """Return the pyramid of the cloud, with attributes."""
     terrain = open_terrain(las, attributes=["classification", "hag", "intensity"])
-    return terrain.record(analyse(terrain.mesh, levels=4))
+    return terrain.geo_pyramid(analyse(terrain.mesh, levels=4))
 
 
 @pytest.fixture(scope="session")

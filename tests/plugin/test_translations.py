@@ -24,7 +24,7 @@ def test_the_template_is_up_to_date(translations):
 
 
 def test_the_context_is_the_plugins(translations):
-    source = (ROOT / "plugin" / "translation.py").read_text("utf-8")
+    source = (ROOT / "plugin" / "ui" / "translation.py").read_text("utf-8")
     assert f'CONTEXT = "{translations.CONTEXT}"' in source
 
 

@@ -40,9 +40,9 @@ def las_crs(header: LasHeader) -> Georeference:
     keys = _geo_keys(records)
     unit = _UNITS.get(keys.get(_VERTICAL_UNIT, 0))
     faults: list[str] = []
-    for record in records:
-        if record.record_id == 2112:
-            wkt = _text_of(record)
+    for geo in records:
+        if geo.record_id == 2112:
+            wkt = _text_of(geo)
             if _is_understood(wkt, faults):
                 return Georeference(wkt, unit)
     crs = _from_keys(keys, faults)
@@ -51,8 +51,8 @@ def las_crs(header: LasHeader) -> Georeference:
     return Georeference(None, unit, faults[0] if faults else "")
 
 
-def _text_of(record: Any) -> str:
-    raw: bytes = record.record_data_bytes()
+def _text_of(geo: Any) -> str:
+    raw: bytes = geo.record_data_bytes()
     return raw.split(b"\0")[0].decode("utf-8", errors="replace").strip()
 
 
@@ -73,11 +73,11 @@ def _is_understood(wkt: str, faults: list[str]) -> bool:
 
 def _geo_keys(records: list[Any]) -> dict[int, int]:
     """Return the keys that hold their value themselves, by id."""
-    for record in records:
-        if record.record_id == 34735 and hasattr(record, "geo_keys"):
+    for geo in records:
+        if geo.record_id == 34735 and hasattr(geo, "geo_keys"):
             return {
                 int(key.id): int(key.value_offset)
-                for key in record.geo_keys
+                for key in geo.geo_keys
                 if int(key.tiff_tag_location) == 0
             }
     return {}

@@ -39,7 +39,7 @@ from wavelet_gis.io.geopackage import (
 )
 from wavelet_gis.model.cloud_origin import PointSource
 from wavelet_gis.model.dem import RasterSource
-from wavelet_gis.model.terrain_pyramid import MeshSource, PyramidRecord, Source
+from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource, Source
 
 __all__ = ["FORMAT_VERSION", "read_pyramid", "read_summary", "write_pyramid"]
 
@@ -88,20 +88,20 @@ Progress = Callable[[float], bool | None]
 
 
 def write_pyramid(
-    path: str | os.PathLike[str], record: PyramidRecord, progress: Progress | None = None
+    path: str | os.PathLike[str], geo: GeoPyramid, progress: Progress | None = None
 ) -> None:
-    """Write a record to a new GeoPackage without spatial layers.
+    """Write a pyramid to a new GeoPackage without spatial layers.
 
     Parameters
     ----------
     path : path
         A file that does not exist yet (write to a scratch file, see `wavelet_gis.io.atomic`).
-    record : PyramidRecord
+    geo : GeoPyramid
         What to write.
     progress : callable, optional
         Called with a fraction in [0, 1]; returning False stops with `Cancelled`.
     """
-    metadata, arrays = _to_parts(record)
+    metadata, arrays = _to_parts(geo)
     create_geopackage(path)
     with open_for_writing(path) as connection, _pool() as pool:
         connection.executescript(_SCHEMA)
@@ -112,7 +112,7 @@ def write_pyramid(
             connection.execute(
                 "INSERT INTO wavelet_metadata (name, value) VALUES (?, ?)", (name, text)
             )
-        _write_levels(connection, record)
+        _write_levels(connection, geo)
         total, done = sum(array.nbytes for array in arrays.values()) or 1, 0
         for name, array in arrays.items():
             _write_array(connection, name, array, pool)
@@ -121,8 +121,8 @@ def write_pyramid(
                 raise Cancelled("writing the pyramid was cancelled; nothing was kept.")
 
 
-def read_pyramid(path: str | os.PathLike[str]) -> PyramidRecord:
-    """Return the record in a pyramid file, everything in it checked.
+def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
+    """Return the pyramid in a pyramid file, everything in it checked.
 
     Parameters
     ----------
@@ -167,8 +167,8 @@ def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
 # -- what goes in, and how it comes out ----------------------------------------------------------
 
 
-def _to_parts(record: PyramidRecord) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    pyramid = record.pyramid
+def _to_parts(geo: GeoPyramid) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    pyramid = geo.pyramid
     arrays: dict[str, NDArray[Any]] = {"faces": pyramid.faces, "coarse": pyramid.coarse}
     if pyramid.horizontal is not None:
         arrays["horizontal"] = pyramid.horizontal
@@ -177,9 +177,9 @@ def _to_parts(record: PyramidRecord) -> tuple[dict[str, Any], dict[str, NDArray[
     for level, step in enumerate(pyramid.steps):
         for name in _STEP_DTYPES:
             arrays[f"steps/{level:04d}/{name}"] = getattr(step, name)
-    source: dict[str, Any] = {"kind": record.source.kind}
-    if not isinstance(record.source, MeshSource):
-        source, source_arrays = record.source.to_parts()
+    source: dict[str, Any] = {"kind": geo.source.kind}
+    if not isinstance(geo.source, MeshSource):
+        source, source_arrays = geo.source.to_parts()
         arrays.update(source_arrays)
     metadata = {
         "format": {
@@ -197,19 +197,19 @@ def _to_parts(record: PyramidRecord) -> tuple[dict[str, Any], dict[str, NDArray[
             "has_locked": pyramid.locked is not None,
             "parameters": dict(pyramid.parameters),
         },
-        "crs": record.system.to_dict(),
-        "frame": record.frame.to_dict(),
-        "vertical_unit": record.vertical_unit,
+        "crs": geo.system.to_dict(),
+        "frame": geo.frame.to_dict(),
+        "vertical_unit": geo.vertical_unit,
         "source": source,
-        "source_name": os.path.basename(record.source_name),
-        "history": list(record.history),
+        "source_name": os.path.basename(geo.source_name),
+        "history": list(geo.history),
     }
     return metadata, arrays
 
 
 def _from_parts(
     metadata: dict[str, Any], arrays: _Arrays, levels: tuple[LevelErrors, ...]
-) -> PyramidRecord:
+) -> GeoPyramid:
     described = metadata["pyramid"]
     n_levels = described["n_levels"]
     if not isinstance(n_levels, int) or not 0 <= n_levels <= _MAX_LEVELS:
@@ -244,7 +244,7 @@ def _from_parts(
                 f"the source has {source.n_vertices} vertices, the pyramid {n_vertices}; analyse "
                 "the input anew."
             )
-    return PyramidRecord(
+    return GeoPyramid(
         pyramid=pyramid,
         system=CoordinateSystem.from_dict(metadata["crs"]),
         frame=LocalFrame.from_dict(metadata["frame"]),
@@ -271,16 +271,16 @@ def _source_from(fields: dict[str, Any], arrays: _Arrays) -> Source:
 # -- tables --------------------------------------------------------------------------------------
 
 
-def _write_levels(connection: sqlite3.Connection, record: PyramidRecord) -> None:
-    pyramid = record.pyramid
+def _write_levels(connection: sqlite3.Connection, geo: GeoPyramid) -> None:
+    pyramid = geo.pyramid
     rows: list[tuple[float | None, ...]]
-    if record.errors is None:
+    if geo.errors is None:
         rows = [
             (level, pyramid.n_vertices(level), pyramid.n_faces(level), None, None, None, None)
             for level in range(pyramid.n_levels, -1, -1)
         ]
     else:
-        rows = [tuple(level) for level in record.errors]
+        rows = [tuple(level) for level in geo.errors]
     connection.executemany(
         "INSERT INTO wavelet_levels (level, n_vertices, n_faces, rmse_coefficients, rmse_surface, "
         "max_error_surface, n_uncovered) VALUES (?,?,?,?,?,?,?)",

@@ -40,7 +40,7 @@ class PointSource:
         X, Y, Z of each, less those of its vertex.
     dropped_attributes : tuple of (n_dropped,) arrays
         Their attributes as stored.
-    ledger : tuple of ExactColumn, or None
+    corrections : tuple of ExactColumn, or None
         What rounding loses, for X, Y, Z and each attribute; None once the pyramid has been
         altered (filtered).
     checksum : str
@@ -53,7 +53,7 @@ class PointSource:
     representative: NDArray[np.int64]
     differences: NDArray[np.int64]
     dropped_attributes: tuple[NDArray[Any], ...]
-    ledger: tuple[ExactColumn, ...] | None
+    corrections: tuple[ExactColumn, ...] | None
     checksum: str
 
     kind = "points"
@@ -65,7 +65,7 @@ class PointSource:
         kept: NDArray[np.int64],
         representative: NDArray[np.int64],
     ) -> PointSource:
-        """Return the source of a cloud, before there is a pyramid (and so without a ledger).
+        """Return the source of a cloud, before there is a pyramid (and so without corrections).
 
         Parameters
         ----------
@@ -86,11 +86,13 @@ class PointSource:
             representative=vertex,
             differences=differences,
             dropped_attributes=tuple(a.values[dropped] for a in cloud.attributes),
-            ledger=None,
+            corrections=None,
             checksum=checksum(cloud.columns()),
         )
 
-    def with_ledger(self, cloud: PointCloud, mesh: TriangleMesh, frame: LocalFrame) -> PointSource:
+    def with_corrections(
+        self, cloud: PointCloud, mesh: TriangleMesh, frame: LocalFrame
+    ) -> PointSource:
         """Return the source that gives `cloud` back exactly from the synthesised `mesh`."""
         kept = self._kept()
         columns = tuple(
@@ -99,16 +101,16 @@ class PointSource:
                 cloud.columns(), self._approximate(mesh, frame), strict=True
             )
         )
-        return replace(self, ledger=columns)
+        return replace(self, corrections=columns)
 
     def altered(self) -> PointSource:
         """Return the source for a pyramid whose coefficients have been changed."""
-        return replace(self, ledger=None)
+        return replace(self, corrections=None)
 
     @property
     def is_exact(self) -> bool:
         """Whether the original comes back bit for bit."""
-        return self.ledger is not None
+        return self.corrections is not None
 
     @property
     def n_vertices(self) -> int:
@@ -152,12 +154,12 @@ class PointSource:
     def _full_column(
         self, k: int, approximate: NDArray[np.float64], kept: NDArray[np.int64]
     ) -> NDArray[Any]:
-        """One column for all points: vertices first by the ledger, then what they stand for."""
+        """One column for all points: corrected vertices first, then what they stand for."""
         dtype = np.dtype(np.int32) if k < 3 else self.cloud.attributes[k - 3].values.dtype
-        if self.ledger is None:
+        if self.corrections is None:
             of_vertices = nearest_of_dtype(approximate, dtype)
         else:
-            of_vertices = self.ledger[k].restore(approximate)
+            of_vertices = self.corrections[k].restore(approximate)
         column = np.empty(self.n_points, dtype=dtype)
         column[kept] = of_vertices
         if k < 3:
@@ -218,9 +220,9 @@ class PointSource:
             arrays[f"source/dropped_attribute_{k}"] = values
         for k, values in enumerate(cloud.carried.values()):
             arrays[f"source/carried_{k}"] = values
-        if self.ledger is not None:
+        if self.corrections is not None:
             fields["ledger"] = []
-            for k, column in enumerate(self.ledger):
+            for k, column in enumerate(self.corrections):
                 column_fields, column_arrays = column.to_parts(f"source/ledger_{k}")
                 fields["ledger"].append(column_fields)
                 arrays.update(column_arrays)
@@ -261,9 +263,9 @@ class PointSource:
             n_in_file=int(fields["n_in_file"]),
             classes=None if fields["classes"] is None else tuple(map(int, fields["classes"])),
         )
-        ledger = None
+        corrections = None
         if "ledger" in fields:
-            ledger = tuple(
+            corrections = tuple(
                 ExactColumn.from_parts(f"source/ledger_{k}", column, arrays)
                 for k, column in enumerate(fields["ledger"])
             )
@@ -276,7 +278,7 @@ class PointSource:
             dropped_attributes=tuple(
                 arrays[f"source/dropped_attribute_{k}"] for k in range(len(attributes))
             ),
-            ledger=ledger,
+            corrections=corrections,
             checksum=str(fields["checksum"]),
         )
         source._check()
@@ -308,10 +310,10 @@ class PointSource:
             _require(len(values) == self.n_points, f"dimension {name}")
         for block in (cloud.header, cloud.evlrs):
             _require(block.ndim == 1 and block.dtype == np.uint8, "header")
-        if self.ledger is not None:
+        if self.corrections is not None:
             dtypes = [np.dtype(np.int32)] * 3 + [a.values.dtype for a in cloud.attributes]
-            _require(len(self.ledger) == n_columns, "ledger")
-            _require([column.dtype for column in self.ledger] == dtypes, "ledger's data types")
+            _require(len(self.corrections) == n_columns, "ledger")
+            _require([column.dtype for column in self.corrections] == dtypes, "ledger's data types")
 
 
 def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, PointSource]:

@@ -111,7 +111,7 @@ class RasterSource:
         Its cells with data; the i-th of them is vertex i.
     holes : (n_holes,) of the DEM's type
         The numbers that were stored in the other cells.
-    ledger : ExactColumn or None
+    corrections : ExactColumn or None
         What rounding loses; None once the pyramid has been altered (filtered).
     checksum : str
         SHA-256 of the DEM's numbers.
@@ -125,14 +125,14 @@ class RasterSource:
     dtype: np.dtype[Any]
     valid: NDArray[np.bool_]
     holes: NDArray[Any]
-    ledger: ExactColumn | None
+    corrections: ExactColumn | None
     checksum: str
 
     kind = "raster"
 
     @classmethod
     def from_dem(cls, dem: Dem) -> RasterSource:
-        """Return the source of a DEM, before there is a pyramid (and so without a ledger)."""
+        """Return the source of a DEM, before there is a pyramid (and so without corrections)."""
         return cls(
             geometry=dem.geometry,
             nodata=dem.nodata,
@@ -142,23 +142,23 @@ class RasterSource:
             dtype=dem.values.dtype.newbyteorder("<"),
             valid=dem.valid,
             holes=dem.values[~dem.valid],
-            ledger=None,
+            corrections=None,
             checksum=checksum([dem.values]),
         )
 
-    def with_ledger(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterSource:
+    def with_corrections(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterSource:
         """Return the source that gives `dem` back exactly from the synthesised `mesh`."""
         approximate = self._values(mesh, frame)
-        return replace(self, ledger=exact_column(dem.values[dem.valid], approximate))
+        return replace(self, corrections=exact_column(dem.values[dem.valid], approximate))
 
     def altered(self) -> RasterSource:
         """Return the source for a pyramid whose coefficients have been changed."""
-        return replace(self, ledger=None)
+        return replace(self, corrections=None)
 
     @property
     def is_exact(self) -> bool:
         """Whether the original comes back bit for bit."""
-        return self.ledger is not None
+        return self.corrections is not None
 
     @property
     def n_vertices(self) -> int:
@@ -182,12 +182,12 @@ class RasterSource:
         approximate = self._values(mesh, frame)
         values = np.empty(self.geometry.shape, dtype=self.dtype)
         values[~self.valid] = self.holes
-        if self.ledger is None:
+        if self.corrections is None:
             values[self.valid] = _avoiding_nodata(
                 nearest_of_dtype(approximate, self.dtype), self.nodata
             )
         else:
-            values[self.valid] = self.ledger.restore(approximate)
+            values[self.valid] = self.corrections.restore(approximate)
             if checksum([values]) != self.checksum:
                 raise PyramidError(
                     "the reconstruction is not bit for bit the original (its checksum differs); "
@@ -220,9 +220,9 @@ class RasterSource:
             "source/valid": np.packbits(self.valid.reshape(-1)),
             "source/holes": self.holes,
         }
-        if self.ledger is not None:
-            fields["ledger"], ledger_arrays = self.ledger.to_parts("source/ledger")
-            arrays.update(ledger_arrays)
+        if self.corrections is not None:
+            fields["ledger"], correction_arrays = self.corrections.to_parts("source/ledger")
+            arrays.update(correction_arrays)
         return fields, arrays
 
     @classmethod
@@ -264,13 +264,15 @@ class RasterSource:
         valid = np.unpackbits(packed, count=n_cells).astype(bool).reshape(n_rows, n_columns)
         if len(holes) != n_cells - np.count_nonzero(valid) or holes.dtype != dtype:
             raise PyramidError("the holes of the raster do not fit its mask; analyse it anew.")
-        ledger = None
+        corrections = None
         if "ledger" in fields:
-            ledger = ExactColumn.from_parts("source/ledger", fields["ledger"], arrays)
-            if ledger.dtype != dtype:
+            corrections = ExactColumn.from_parts("source/ledger", fields["ledger"], arrays)
+            if corrections.dtype != dtype:
                 raise PyramidError("the raster's ledger has another data type; analyse it anew.")
         geometry = GridGeometry((n_rows, n_columns), transform)  # type: ignore[arg-type]
-        return cls(geometry, nodata, scale, offset, profile, dtype, valid, holes, ledger, digest)
+        return cls(
+            geometry, nodata, scale, offset, profile, dtype, valid, holes, corrections, digest
+        )
 
 
 def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:

@@ -1,7 +1,7 @@
 """Bit-for-bit originals out of a synthesis that is exact only to rounding.
 
-A pyramid gives each value back with an error of some 1e-13 of its column's range. The ledger keeps
-the little that is missing, so that what came in goes out again, whatever its data type:
+A pyramid gives each value back with an error of some 1e-13 of its column's range. The corrections
+keep the little that is missing, so that what came in goes out again, whatever its data type:
 
 * a quantum q, a power of two some 500 times larger than the error that was seen;
 * for each value its remainder ``r = a - q round(a / q)``. It is zero for integers, for nearly all

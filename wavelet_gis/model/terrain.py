@@ -11,7 +11,7 @@ from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
 from wavelet_gis.model.cloud import PointCloud, cloud_bounds
 from wavelet_gis.model.cloud_origin import PointSource, cloud_mesh
 from wavelet_gis.model.dem import Dem, RasterSource, dem_mesh, grid_bounds
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = [
     "Terrain",
@@ -34,7 +34,7 @@ class Terrain:
     original : Dem or PointCloud
         As it came.
     source : RasterSource or PointSource
-        How to come back; without a ledger until there is a pyramid.
+        How to come back; without corrections until there is a pyramid.
     system : CoordinateSystem
         The CRS.
     frame : LocalFrame
@@ -51,14 +51,14 @@ class Terrain:
     frame: LocalFrame
     vertical_unit: str
 
-    def record(self, pyramid: Pyramid) -> PyramidRecord:
+    def geo_pyramid(self, pyramid: Pyramid) -> GeoPyramid:
         """Return the pyramid with everything that its file must hold.
 
         The finest mesh is synthesised once, to keep what rounding loses.
         """
         finest = pyramid.synthesise()
-        source = self.source.with_ledger(self.original, finest, self.frame)  # type: ignore[arg-type]
-        return PyramidRecord(
+        source = self.source.with_corrections(self.original, finest, self.frame)  # type: ignore[arg-type]
+        return GeoPyramid(
             pyramid=pyramid,
             system=self.system,
             frame=self.frame,

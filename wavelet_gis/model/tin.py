@@ -14,8 +14,8 @@ from wavelet_core.errors import MeshError
 from wavelet_core.mesh.location import surface_errors
 from wavelet_core.mesh.triangulation import Merged, delaunay_faces, merge_duplicates
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource
 from wavelet_gis.model.terrain import frame_of_bounds
-from wavelet_gis.model.terrain_pyramid import MeshSource, PyramidRecord
 
 __all__ = [
     "ConstrainedTin",
@@ -160,9 +160,9 @@ class TinTerrain(NamedTuple):
     frame: LocalFrame
     vertical_unit: str
 
-    def record(self, pyramid: Pyramid) -> PyramidRecord:
+    def geo_pyramid(self, pyramid: Pyramid) -> GeoPyramid:
         """Return the pyramid with everything that its file must hold."""
-        return PyramidRecord(
+        return GeoPyramid(
             pyramid=pyramid,
             system=self.system,
             frame=self.frame,

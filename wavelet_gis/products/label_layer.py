@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.styles import quoted
 from wavelet_gis.products.wkb import points_wkb
@@ -37,7 +37,7 @@ _CLASS_COLOURS = {
 
 
 def label_layer(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     labels: NDArray[np.int64],
     confidence: NDArray[np.float64],
     name: str = "cluster",
@@ -46,7 +46,7 @@ def label_layer(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Whose vertices.
     labels : (n_vertices,) int64
         What is shown.
@@ -55,13 +55,13 @@ def label_layer(
     name : {"cluster", "class"}
         Of the field, and in the plural of the layer.
     """
-    mesh = record.pyramid.synthesise()
+    mesh = geo.pyramid.synthesise()
     plural = {"cluster": "clusters", "class": "classes"}[name]
     colours = _CLASS_COLOURS if name == "class" else {}
     return Layer(
         plural,
         "Point Z",
-        points_wkb(record.frame.to_file(mesh.vertices)),
+        points_wkb(geo.frame.to_file(mesh.vertices)),
         {
             "vertex_id": np.arange(mesh.n_vertices, dtype=np.int64),
             name: labels.astype(np.int32),

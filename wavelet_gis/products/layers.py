@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.styles import detail_style, tin_style, vertex_style
 from wavelet_gis.products.wkb import points_wkb, triangles_wkb
 
@@ -50,23 +50,23 @@ class Layer:
     description: str
 
 
-def coarse_layers(record: PyramidRecord, level: int = 0) -> Iterator[Layer]:
+def coarse_layers(geo: GeoPyramid, level: int = 0) -> Iterator[Layer]:
     """Yield the TIN and the vertices of a level, by default the coarsest.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Where they are taken from.
     level : int
         Which level.
     """
-    mesh = record.pyramid.mesh(level)
+    mesh = geo.pyramid.mesh(level)
     name = "coarse" if level == 0 else f"level_{level:02d}"
-    yield from tin_layers(record, mesh, record.pyramid.vertex_ids(level), name)
+    yield from tin_layers(geo, mesh, geo.pyramid.vertex_ids(level), name)
 
 
 def tin_layers(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     mesh: TriangleMesh,
     vertex_ids: NDArray[np.int64],
     name: str = "tin",
@@ -75,7 +75,7 @@ def tin_layers(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Gives the frame of the mesh.
     mesh : TriangleMesh
         In the working frame, where slopes are measured.
@@ -84,7 +84,7 @@ def tin_layers(
     name : str
         What the layers' names begin with.
     """
-    vertices = record.frame.to_file(mesh.vertices)
+    vertices = geo.frame.to_file(mesh.vertices)
     corners = vertices[mesh.faces]
     elevation = corners[:, :, 2].mean(axis=1)
     slope = slopes(mesh)
@@ -118,25 +118,25 @@ def tin_layers(
     )
 
 
-def detail_layers(record: PyramidRecord) -> Iterator[Layer]:
+def detail_layers(geo: GeoPyramid) -> Iterator[Layer]:
     """Yield a layer of details for each step, coarsest first, made one at a time.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Where they are taken from.
     """
-    pyramid = record.pyramid
+    pyramid = geo.pyramid
     names: list[str] = []
     for channel in pyramid.channels:
         names.append(_free_name(f"w_{channel}", [*names, *_RESERVED, *_DETAIL_FIELDS]))
     for level, detail in pyramid.details():
-        vectors = record.file_details(detail.vectors)
+        vectors = geo.file_details(detail.vectors)
         magnitude = np.linalg.norm(vectors, axis=1)
         yield Layer(
             detail_layer_name(level),
             "Point Z",
-            points_wkb(record.frame.to_file(detail.positions)),
+            points_wkb(geo.frame.to_file(detail.positions)),
             {
                 "vertex_id": detail.vertex_ids,
                 "level": np.full(len(vectors), level, dtype=np.int32),

@@ -7,14 +7,14 @@ import numpy as np
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_gis.model.dem import Dem, GridGeometry, RasterSource
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.rasterise import geometry_over, rasterise
 
 __all__ = ["surface_dem", "surface_difference"]
 
 
 def surface_dem(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     mesh: TriangleMesh,
     *,
     cell_size: float | None = None,
@@ -24,7 +24,7 @@ def surface_dem(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Gives the frame, and the grid where it was made from a raster.
     mesh : TriangleMesh
         In the working frame.
@@ -45,9 +45,9 @@ def surface_dem(
     OptionError
         When there is no such attribute.
     """
-    in_file = record.file_mesh(mesh)
+    in_file = geo.file_mesh(mesh)
     values = _attribute_values(in_file, attribute) if attribute else None
-    source = record.source if isinstance(record.source, RasterSource) else None
+    source = geo.source if isinstance(geo.source, RasterSource) else None
     if source is not None and not cell_size:
         geometry = source.geometry
     else:
@@ -65,15 +65,15 @@ def surface_dem(
     return Dem(grid, covered, geometry, tag, profile=profile)
 
 
-def surface_difference(before: PyramidRecord, after: PyramidRecord) -> Dem:
-    """Return the finest surface of one record minus that of another, on the grid of their raster.
+def surface_difference(before: GeoPyramid, after: GeoPyramid) -> Dem:
+    """Return the finest surface of one pyramid minus that of another, on the grid of their raster.
 
     Parameters
     ----------
-    before, after : PyramidRecord
+    before, after : GeoPyramid
         Of the same raster: a pyramid, and the same one filtered.
     """
-    old, new = (surface_dem(record, record.pyramid.synthesise()) for record in (before, after))
+    old, new = (surface_dem(geo, geo.pyramid.synthesise()) for geo in (before, after))
     valid = old.valid & new.valid
     values = np.where(valid, new.values - old.values, np.float32("nan")).astype(np.float32)
     return Dem(values, valid, old.geometry, float("nan"), profile=old.profile)

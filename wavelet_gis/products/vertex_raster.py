@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import GridGeometry, RasterSource
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.rasterise import geometry_over, rasterise
 
 __all__ = ["Bands", "grid_of", "label_band", "value_bands", "write_bands"]
@@ -46,23 +46,21 @@ class Bands:
         return NO_LABEL if self.values.dtype == np.uint8 else float("nan")
 
 
-def grid_of(
-    record: PyramidRecord, mesh: TriangleMesh, cell_size: float | None = None
-) -> GridGeometry:
+def grid_of(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None = None) -> GridGeometry:
     """Return the grid on which values of a pyramid are shown.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Its own grid is taken where it was made from a raster and no cell size is given.
     mesh : TriangleMesh
         In the working frame.
     cell_size : float, optional
         In the input's unit of x and y; by default, for points, their mean spacing.
     """
-    if isinstance(record.source, RasterSource) and cell_size is None:
-        return record.source.geometry
-    vertices = record.frame.to_file(mesh.vertices)
+    if isinstance(geo.source, RasterSource) and cell_size is None:
+        return geo.source.geometry
+    vertices = geo.frame.to_file(mesh.vertices)
     (x_min, y_min, _), (x_max, y_max, _) = vertices.min(axis=0), vertices.max(axis=0)
     if cell_size is None:
         cell_size = float(np.sqrt((x_max - x_min) * (y_max - y_min) / max(len(vertices), 1)))
@@ -70,7 +68,7 @@ def grid_of(
 
 
 def value_bands(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     mesh: TriangleMesh,
     columns: NDArray[np.float64],
     names: Sequence[str],
@@ -80,7 +78,7 @@ def value_bands(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Gives frame and grid.
     mesh : TriangleMesh
         In the working frame.
@@ -91,20 +89,20 @@ def value_bands(
     cell_size : float, optional
         See `grid_of`.
     """
-    geometry = grid_of(record, mesh, cell_size)
+    geometry = grid_of(geo, mesh, cell_size)
     values = np.full((len(names), *geometry.shape), np.nan, dtype=np.float32)
-    valid = _valid_cells(record, mesh, cell_size)
+    valid = _valid_cells(geo, mesh, cell_size)
     if valid is not None:
         values[:, valid] = columns.T
     else:
-        in_file = record.file_mesh(mesh)
+        in_file = geo.file_mesh(mesh)
         for band, column in zip(values, columns.T, strict=True):
             band[:] = rasterise(in_file, geometry, column)
     return Bands(values, tuple(names), geometry)
 
 
 def label_band(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     mesh: TriangleMesh,
     labels: NDArray[np.integer[Any]],
     name: str,
@@ -114,7 +112,7 @@ def label_band(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Gives frame and grid.
     mesh : TriangleMesh
         The finest one, in the working frame.
@@ -135,18 +133,18 @@ def label_band(
             f"label {labels.max()} does not fit a raster of bytes; use labels of 0 to 254."
         )
     stored = np.where(labels < 0, NO_LABEL, labels).astype(np.uint8)
-    geometry = grid_of(record, mesh, cell_size)
+    geometry = grid_of(geo, mesh, cell_size)
     values = np.full((1, *geometry.shape), NO_LABEL, dtype=np.uint8)
-    valid = _valid_cells(record, mesh, cell_size)
+    valid = _valid_cells(geo, mesh, cell_size)
     if valid is not None:
         values[0, valid] = stored
     else:
         from scipy.spatial import cKDTree
 
-        in_file = record.file_mesh(mesh)
+        in_file = geo.file_mesh(mesh)
         rows, columns = np.nonzero(np.isfinite(rasterise(in_file, geometry)))
         x, y = geometry.centres(columns, rows)
-        local = np.column_stack([record.frame.local_x(x), record.frame.local_y(y)])
+        local = np.column_stack([geo.frame.local_x(x), geo.frame.local_y(y)])
         if len(local):
             nearest = cKDTree(mesh.vertices[:, :2]).query(local)[1]
             values[0, rows, columns] = stored[nearest]
@@ -191,10 +189,10 @@ def write_bands(path: str | os.PathLike[str], bands: Bands, wkt: str | None) -> 
 
 
 def _valid_cells(
-    record: PyramidRecord, mesh: TriangleMesh, cell_size: float | None
+    geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None
 ) -> NDArray[np.bool_] | None:
     """Return the cells of the input's own grid, if they are the vertices of the mesh one by one."""
-    source = record.source
+    source = geo.source
     if not isinstance(source, RasterSource) or cell_size is not None:
         return None
     return source.valid if mesh.n_vertices == source.n_vertices else None

@@ -14,7 +14,7 @@ from wavelet_core import TriangleMesh
 from wavelet_core.features.shape import SHAPE_NAMES, surface_shape
 from wavelet_core.features.spectrum import STAYS, band_components, band_energies, vertex_details
 from wavelet_core.lifting.spacings import level_spacings
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.styles import detail_style, vertex_style
 from wavelet_gis.products.wkb import points_wkb
@@ -33,13 +33,13 @@ FloatArray = NDArray[np.float64]
 
 
 def energy_columns(
-    record: PyramidRecord, channel: str | None = None, progress: Progress | None = None
+    geo: GeoPyramid, channel: str | None = None, progress: Progress | None = None
 ) -> FloatArray:
     """Root of the band energies at every vertex of the input, ``(n_vertices, L)``.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is analysed.
     channel : str, optional
         One of the pyramid's; by default the geometry.
@@ -51,26 +51,26 @@ def energy_columns(
     ndarray
         Root mean square details, in the input's unit of z or in that of the attribute.
     """
-    energies: FloatArray = np.sqrt(band_energies(record.pyramid, channel, progress))
-    return energies / _file_scale(record, channel)
+    energies: FloatArray = np.sqrt(band_energies(geo.pyramid, channel, progress))
+    return energies / _file_scale(geo, channel)
 
 
 def component_columns(
-    record: PyramidRecord, channel: str | None = None, progress: Progress | None = None
+    geo: GeoPyramid, channel: str | None = None, progress: Progress | None = None
 ) -> FloatArray:
     """Return what each level adds to the input at every vertex, ``(n_vertices, L)``, signed.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is analysed.
     channel : str, optional
         One of the pyramid's; by default z.
     progress : callable, optional
         See `wavelet_core.features.spectrum.band_components`.
     """
-    components = band_components(record.pyramid, channel, progress)
-    return components.bands / _file_scale(record, channel or "z")
+    components = band_components(geo.pyramid, channel, progress)
+    return components.bands / _file_scale(geo, channel or "z")
 
 
 def shape_columns(mesh: TriangleMesh) -> FloatArray:
@@ -85,19 +85,19 @@ def shape_columns(mesh: TriangleMesh) -> FloatArray:
     return np.column_stack([shape.named(name) for name in SHAPE_NAMES])
 
 
-def band_names(record: PyramidRecord, what: str = "rms") -> tuple[str, ...]:
+def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
     """Name of each band with the spacing that it belongs to, the coarsest level first.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Whose levels are named.
     what : str
         The first word.
     """
-    spacings = level_spacings(record.pyramid)[1:]
-    unit = "m" if record.system.kind == "geographic" else "units"
-    if record.system.kind == "projected" and record.system.horizontal_unit == 1.0:
+    spacings = level_spacings(geo.pyramid)[1:]
+    unit = "m" if geo.system.kind == "geographic" else "units"
+    if geo.system.kind == "projected" and geo.system.horizontal_unit == 1.0:
         unit = "m"
     return tuple(
         f"{what} of level {level}, spacing {spacing:.3g} {unit}"
@@ -106,13 +106,13 @@ def band_names(record: PyramidRecord, what: str = "rms") -> tuple[str, ...]:
 
 
 def vertex_layer(
-    record: PyramidRecord, channel: str | None = None, progress: Progress | None = None
+    geo: GeoPyramid, channel: str | None = None, progress: Progress | None = None
 ) -> Layer:
     """Every vertex of the input with the level at which it went, its details and its spectrum.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is analysed.
     channel : str, optional
         Of the spectrum; by default the geometry.
@@ -126,12 +126,12 @@ def vertex_layer(
         have no details: NULL), ``w_<channel>``, ``magnitude``, and ``rms_00`` and on, the root
         of the band energies.
     """
-    pyramid = record.pyramid
+    pyramid = geo.pyramid
     finest = pyramid.synthesise()
     details = vertex_details(pyramid)
-    vectors = record.file_details(details.vectors)
+    vectors = geo.file_details(details.vectors)
     magnitude = np.linalg.norm(vectors, axis=1)
-    energies = energy_columns(record, channel, progress)
+    energies = energy_columns(geo, channel, progress)
     fields: dict[str, NDArray] = {
         "vertex_id": np.arange(finest.n_vertices, dtype=np.int64),
         "level": details.level,
@@ -145,7 +145,7 @@ def vertex_layer(
     return Layer(
         "vertex_spectra",
         "Point Z",
-        points_wkb(record.frame.to_file(finest.vertices)),
+        points_wkb(geo.frame.to_file(finest.vertices)),
         fields,
         detail_style(max(pyramid.n_levels - 1, 0), pyramid.n_levels, known),
         "Spectra of the vertices",
@@ -154,21 +154,21 @@ def vertex_layer(
     )
 
 
-def shape_layer(record: PyramidRecord, level: int) -> Layer:
+def shape_layer(geo: GeoPyramid, level: int) -> Layer:
     """Return the vertices of a level with slope, aspect and curvatures of its surface.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is analysed.
     level : int
         Whose surface.
     """
-    mesh = record.pyramid.mesh(level)
+    mesh = geo.pyramid.mesh(level)
     columns = shape_columns(mesh)
-    vertices = record.frame.to_file(mesh.vertices)
+    vertices = geo.frame.to_file(mesh.vertices)
     fields: dict[str, NDArray] = {
-        "vertex_id": record.pyramid.vertex_ids(level),
+        "vertex_id": geo.pyramid.vertex_ids(level),
         "elevation": vertices[:, 2],
     }
     fields.update({name: columns[:, k] for k, name in enumerate(SHAPE_NAMES)})
@@ -184,7 +184,7 @@ def shape_layer(record: PyramidRecord, level: int) -> Layer:
     )
 
 
-def _file_scale(record: PyramidRecord, channel: str | None) -> float:
+def _file_scale(geo: GeoPyramid, channel: str | None) -> float:
     """Working units in one of the file's, for a channel."""
-    is_height = channel == "z" or (channel is None and record.pyramid.signal == "z")
-    return record.frame.z_scale if is_height else 1.0
+    is_height = channel == "z" or (channel is None and geo.pyramid.signal == "z")
+    return geo.frame.z_scale if is_height else 1.0

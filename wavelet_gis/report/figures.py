@@ -15,7 +15,7 @@ from wavelet_core import TriangleMesh
 from wavelet_core.errors import Cancelled, OptionError
 from wavelet_core.features.shape import surface_shape
 from wavelet_core.mesh.location import surface_errors
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["ReportData", "chosen_levels", "report_data", "triangle_quality"]
 
@@ -60,7 +60,7 @@ class ReportData:
 
 
 def report_data(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     levels: Sequence[int] | None = None,
     progress: Progress | None = None,
 ) -> ReportData:
@@ -68,7 +68,7 @@ def report_data(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is reported on.
     levels : sequence of int, optional
         Which levels are shown as pictures; see `chosen_levels`.
@@ -82,41 +82,41 @@ def report_data(
     Cancelled
         ``progress`` returned False.
     """
-    pyramid = record.pyramid
-    chosen = chosen_levels(record) if levels is None else list(dict.fromkeys(levels))
+    pyramid = geo.pyramid
+    chosen = chosen_levels(geo) if levels is None else list(dict.fromkeys(levels))
     for level in chosen:
         if not 0 <= level <= pyramid.n_levels:
             raise OptionError(f"there is no level {level}; they are 0 to {pyramid.n_levels}.")
     finest = pyramid.synthesise()
     rows, shown, errors = [], {pyramid.n_levels: finest}, {}
     for level, mesh in pyramid.meshes():
-        distance = surface_errors(mesh, finest.vertices) / record.frame.z_scale
-        rows.append(_level_row(record, level, mesh, finest, distance))
+        distance = surface_errors(mesh, finest.vertices) / geo.frame.z_scale
+        rows.append(_level_row(geo, level, mesh, finest, distance))
         if level in chosen:
             shown[level], errors[level] = mesh, distance
         if progress is not None and progress((level + 1) / (pyramid.n_levels + 1)) is False:
             raise Cancelled("the report was cancelled; nothing was written.")
     figures = {
-        "source": _source_figures(record, finest),
+        "source": _source_figures(geo, finest),
         "levels": rows[::-1],
-        "details": _detail_figures(record),
-        "shown": [_error_figures(record, finest, level, errors[level]) for level in chosen],
+        "details": _detail_figures(geo),
+        "shown": [_error_figures(geo, finest, level, errors[level]) for level in chosen],
         "parameters": dict(pyramid.parameters),
-        "history": list(record.history),
+        "history": list(geo.history),
         "versions": _versions(),
     }
     return ReportData(figures, shown, {level: errors[level] for level in chosen})
 
 
-def chosen_levels(record: PyramidRecord) -> list[int]:
+def chosen_levels(geo: GeoPyramid) -> list[int]:
     """Return the levels nearest to a quarter and a twentieth of the vertices, and the coarsest.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Whose levels.
     """
-    pyramid = record.pyramid
+    pyramid = geo.pyramid
     counts = np.array([pyramid.n_vertices(level) for level in range(pyramid.n_levels + 1)])
     shares = np.log(counts / counts[-1])
     nearest = [int(np.argmin(np.abs(shares - np.log(share)))) for share in SHOWN_SHARES]
@@ -155,13 +155,13 @@ def triangle_quality(mesh: TriangleMesh) -> dict[str, float]:
 
 
 def _level_row(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     level: int,
     mesh: TriangleMesh,
     finest: TriangleMesh,
     distance: FloatArray,
 ) -> dict[str, Any]:
-    ids = record.pyramid.vertex_ids(level)
+    ids = geo.pyramid.vertex_ids(level)
     reference = np.hstack([finest.vertices, finest.attributes])
     extent = np.ptp(reference, axis=0)
     difference = np.hstack([mesh.vertices, mesh.attributes]) - reference[ids]
@@ -184,10 +184,10 @@ def _level_row(
     }
 
 
-def _detail_figures(record: PyramidRecord) -> dict[str, Any]:
+def _detail_figures(geo: GeoPyramid) -> dict[str, Any]:
     """Histograms of the magnitudes, over bins of equal ratio that all levels share."""
     magnitudes = [
-        np.linalg.norm(record.file_details(step.details), axis=1) for step in record.pyramid.steps
+        np.linalg.norm(geo.file_details(step.details), axis=1) for step in geo.pyramid.steps
     ]
     together = np.concatenate(magnitudes) if magnitudes else np.empty(0)
     together = together[together > 0]
@@ -212,7 +212,7 @@ def _detail_figures(record: PyramidRecord) -> dict[str, Any]:
 
 
 def _error_figures(
-    record: PyramidRecord, finest: TriangleMesh, level: int, distance: FloatArray
+    geo: GeoPyramid, finest: TriangleMesh, level: int, distance: FloatArray
 ) -> dict[str, Any]:
     """Where the error of a level is: by slope of the input, and its worst places."""
     slope = surface_shape(finest).slope
@@ -234,7 +234,7 @@ def _error_figures(
         )
     size = np.abs(np.where(known, distance, 0.0))
     worst = _apart(finest.vertices[:, :2], size)
-    places = record.frame.to_file(finest.vertices[worst])
+    places = geo.frame.to_file(finest.vertices[worst])
     return {
         "level": level,
         "quantiles": {
@@ -263,19 +263,19 @@ def _apart(plan: FloatArray, size: FloatArray) -> list[int]:
     return places
 
 
-def _source_figures(record: PyramidRecord, finest: TriangleMesh) -> dict[str, Any]:
-    vertices = record.frame.to_file(finest.vertices)
+def _source_figures(geo: GeoPyramid, finest: TriangleMesh) -> dict[str, Any]:
+    vertices = geo.frame.to_file(finest.vertices)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     return {
-        "name": record.source_name.replace("\\", "/").rsplit("/", 1)[-1],
-        "kind": record.source.kind,
-        "is_exact": bool(record.source.is_exact),
+        "name": geo.source_name.replace("\\", "/").rsplit("/", 1)[-1],
+        "kind": geo.source.kind,
+        "is_exact": bool(geo.source.is_exact),
         "n_vertices": finest.n_vertices,
         "n_faces": finest.n_faces,
-        "n_levels": record.pyramid.n_levels,
-        "channels": list(record.pyramid.channels),
-        "crs": record.system.name,
-        "vertical_unit": record.vertical_unit,
+        "n_levels": geo.pyramid.n_levels,
+        "channels": list(geo.pyramid.channels),
+        "crs": geo.system.name,
+        "vertical_unit": geo.vertical_unit,
         "x": [float(low[0]), float(high[0])],
         "y": [float(low[1]), float(high[1])],
         "z": [float(low[2]), float(high[2])],

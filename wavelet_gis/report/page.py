@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.report.figures import ReportData, report_data
 from wavelet_gis.report.pictures import (
     difference_png,
@@ -25,7 +25,7 @@ Progress = Callable[[float], bool | None]
 
 
 def report_page(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     levels: Sequence[int] | None = None,
     progress: Progress | None = None,
 ) -> tuple[str, dict[str, Any]]:
@@ -33,7 +33,7 @@ def report_page(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is reported on.
     levels : sequence of int, optional
         Shown as pictures; by default those with about a quarter and a twentieth of the vertices,
@@ -55,9 +55,9 @@ def report_page(
     Cancelled
         ``progress`` returned False.
     """
-    data = report_data(record, levels, progress)
+    data = report_data(geo, levels, progress)
     figures = plain(data.figures)
-    unit = _unit(record)
+    unit = _unit(geo)
     body = "\n".join(
         [
             _head(figures, unit),
@@ -95,11 +95,11 @@ def plain(value: Any) -> Any:
     return value
 
 
-def _unit(record: PyramidRecord) -> str:
+def _unit(geo: GeoPyramid) -> str:
     names = {"metre": "m", "foot": "ft", "us_survey_foot": "ft (US)"}
-    if record.vertical_unit not in names and record.system.kind == "projected":
-        return {1.0: "m", 0.3048: "ft"}.get(record.system.horizontal_unit, "units of z")
-    return names.get(record.vertical_unit, "units of z")
+    if geo.vertical_unit not in names and geo.system.kind == "projected":
+        return {1.0: "m", 0.3048: "ft"}.get(geo.system.horizontal_unit, "units of z")
+    return names.get(geo.vertical_unit, "units of z")
 
 
 def _head(figures: dict[str, Any], unit: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from wavelet_core.errors import MissingDependencyError
 from wavelet_core.features.spectrum import STAYS, vertex_details
 from wavelet_core.lifting.spacings import level_spacings
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["plot_details"]
 
@@ -21,14 +21,14 @@ MAX_MARKERS = 8_000
 LARGEST_MARKER = 50.0
 
 
-def plot_details(path: str | os.PathLike[str], record: PyramidRecord) -> None:
+def plot_details(path: str | os.PathLike[str], geo: GeoPyramid) -> None:
     """Draw the terrain, and beside it every detail as a marker: size by strength, colour by band.
 
     Parameters
     ----------
     path : path
         Any format that matplotlib writes, by its suffix.
-    record : PyramidRecord
+    geo : GeoPyramid
         What is drawn.
 
     Raises
@@ -42,11 +42,11 @@ def plot_details(path: str | os.PathLike[str], record: PyramidRecord) -> None:
     proportional to the magnitude, the 99.5th percentile and above being largest.
     """
     figure_class = _matplotlib_figure()
-    pyramid = record.pyramid
+    pyramid = geo.pyramid
     finest = pyramid.synthesise()
-    x, y, z = record.frame.to_file(finest.vertices).T
+    x, y, z = geo.frame.to_file(finest.vertices).T
     details = vertex_details(pyramid)
-    magnitude = np.linalg.norm(record.file_details(details.vectors), axis=1)
+    magnitude = np.linalg.norm(geo.file_details(details.vectors), axis=1)
     figure = figure_class(figsize=(12, 5.4), layout="constrained")
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     _draw_terrain(figure, left, x, y, z, finest.faces)
@@ -75,7 +75,7 @@ def plot_details(path: str | os.PathLike[str], record: PyramidRecord) -> None:
     for handle in legend.legend_handles:
         handle.set_sizes([30.0])
     for axes in (left, right):
-        axes.set_aspect("equal" if record.system.kind != "geographic" else _aspect(record))
+        axes.set_aspect("equal" if geo.system.kind != "geographic" else _aspect(geo))
         axes.ticklabel_format(useOffset=False, style="plain")
         axes.tick_params(labelsize=7)
         axes.tick_params(axis="x", labelrotation=30)
@@ -94,8 +94,8 @@ def _draw_terrain(figure: Any, axes: Any, x: Any, y: Any, z: Any, faces: Any) ->
     axes.set_title("Terrain")
 
 
-def _aspect(record: PyramidRecord) -> float:
-    return record.frame.y_scale / record.frame.x_scale
+def _aspect(geo: GeoPyramid) -> float:
+    return geo.frame.y_scale / geo.frame.x_scale
 
 
 def _colour(position: float) -> tuple[float, float, float, float]:

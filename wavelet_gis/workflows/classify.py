@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from wavelet_core.errors import MissingDependencyError, OptionError
 from wavelet_core.features.signature import Signature
 from wavelet_core.lifting.spacings import level_spacings
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.vertex_tables import energy_columns
 
 __all__ = [
@@ -196,13 +196,13 @@ def cluster_vertices(
 
 
 def cluster_summary(
-    record: PyramidRecord, labels: IntArray, channel: str | None = None
+    geo: GeoPyramid, labels: IntArray, channel: str | None = None
 ) -> dict[str, Any]:
     """Return size and spectrum of every cluster, or of every class.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Whose vertices are labelled.
     labels : (n_vertices,) int64
         Those below 0 are left out.
@@ -216,7 +216,7 @@ def cluster_summary(
         ``n_vertices``, ``share`` and ``rms``, the root mean square detail in each band in the
         unit of the input, and ``relative``, that over the one of all vertices.
     """
-    squared = energy_columns(record, channel) ** 2
+    squared = energy_columns(geo, channel) ** 2
     overall = np.sqrt(squared.mean(axis=0))
     rows = []
     for label in np.unique(labels[labels >= 0]):
@@ -232,7 +232,7 @@ def cluster_summary(
                 "relative": relative.tolist(),
             }
         )
-    return {"spacings": level_spacings(record.pyramid)[1:].tolist(), "clusters": rows}
+    return {"spacings": level_spacings(geo.pyramid)[1:].tolist(), "clusters": rows}
 
 
 def learn_classes(features: Signature, labels: IntArray, seed: int = 0) -> Classes:

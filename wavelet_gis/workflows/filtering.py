@@ -9,7 +9,7 @@ import numpy as np
 from wavelet_core import denoise
 from wavelet_core.filtering.gains import band_gains, channel_index, check_level, relifted
 from wavelet_core.filtering.noise import channel_noise
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["change_between", "chosen_gains", "denoised_record", "scaled_record"]
 
@@ -17,18 +17,18 @@ Progress = Callable[[float], bool | None]
 
 
 def denoised_record(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     sigma: float | None = None,
     *,
     channels: Sequence[str] = ("z",),
     n_pyramids: int = 8,
     progress: Progress | None = None,
-) -> tuple[PyramidRecord, dict[str, float]]:
-    """Return the record with the noise taken out, and the noise that was taken for it.
+) -> tuple[GeoPyramid, dict[str, float]]:
+    """Return the pyramid with the noise taken out, and the noise that was taken for it.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is filtered.
     sigma : float, optional
         Standard deviation of the noise, in the input's unit; by default estimated.
@@ -41,7 +41,7 @@ def denoised_record(
 
     Returns
     -------
-    PyramidRecord
+    GeoPyramid
         With one more line of history.
     dict of str to float
         Standard deviation of the noise in each channel, in the input's unit.
@@ -51,11 +51,11 @@ def denoised_record(
     OptionError
         An unknown channel or a negative number; nothing has been computed yet.
     """
-    pyramid, sigmas = record.pyramid, {}
+    pyramid, sigmas = geo.pyramid, {}
     for name in channels:
         channel_index(pyramid.channels, name)
     for k, name in enumerate(channels):
-        unit = record.frame.z_scale if name == "z" else 1.0
+        unit = geo.frame.z_scale if name == "z" else 1.0
         deviation = channel_noise(pyramid, name) if sigma is None else sigma * unit
         sigmas[name] = deviation / unit
         if n_pyramids == 0:
@@ -73,11 +73,11 @@ def denoised_record(
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
     listed = ", ".join(f"{name} {deviation:.4g}" for name, deviation in sigmas.items())
     line = f"denoised by {how}, standard deviation of the noise: {listed}"
-    return record.with_pyramid(pyramid, line), sigmas
+    return geo.with_pyramid(pyramid, line), sigmas
 
 
 def chosen_gains(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     gains: Iterable[tuple[int, float]] = (),
     *,
     levels: tuple[int, int] | None = None,
@@ -87,7 +87,7 @@ def chosen_gains(
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Whose levels.
     gains : iterable of (level, gain)
         They multiply what the band gives.
@@ -104,40 +104,40 @@ def chosen_gains(
     """
     chosen: dict[int, float] = {}
     if metres is not None:
-        is_metric = record.system.kind == "geographic"
-        unit = 1.0 if is_metric else 1.0 / record.system.horizontal_unit
-        chosen = band_gains(record.pyramid, lengths=(metres[0] * unit, metres[1] * unit))
+        is_metric = geo.system.kind == "geographic"
+        unit = 1.0 if is_metric else 1.0 / geo.system.horizontal_unit
+        chosen = band_gains(geo.pyramid, lengths=(metres[0] * unit, metres[1] * unit))
     elif levels is not None:
-        chosen = band_gains(record.pyramid, levels=levels)
+        chosen = band_gains(geo.pyramid, levels=levels)
     for level, gain in gains:
-        check_level(level, record.pyramid)
+        check_level(level, geo.pyramid)
         chosen[level] = gain * chosen.get(level, 1.0)
     return chosen
 
 
 def scaled_record(
-    record: PyramidRecord, gains: dict[int, float], *, drops_coarse: bool = False
-) -> PyramidRecord:
-    """Return the record with the details of each level multiplied.
+    geo: GeoPyramid, gains: dict[int, float], *, drops_coarse: bool = False
+) -> GeoPyramid:
+    """Return the pyramid with the details of each level multiplied.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         What is filtered.
     gains : dict of int to float
         By level; others keep 1.
     drops_coarse : bool
         Leave out the coarsest surface too, so that the details remain by themselves.
     """
-    pyramid = record.pyramid.with_gains(gains, 0.0 if drops_coarse else 1.0)
+    pyramid = geo.pyramid.with_gains(gains, 0.0 if drops_coarse else 1.0)
     named = ", ".join(f"{level}={gain:g}" for level, gain in sorted(gains.items()))
     line = f"gains {named or 'unchanged'}" + ", without the coarse surface" * drops_coarse
-    return record.with_pyramid(pyramid, line)
+    return geo.with_pyramid(pyramid, line)
 
 
-def change_between(before: PyramidRecord, after: PyramidRecord) -> tuple[float, float]:
+def change_between(before: GeoPyramid, after: GeoPyramid) -> tuple[float, float]:
     """Return root mean square and largest change of z, in the input's unit."""
-    old, new = (record.pyramid.synthesise().vertices[:, 2] for record in (before, after))
+    old, new = (geo.pyramid.synthesise().vertices[:, 2] for geo in (before, after))
     moved = (new - old) / before.frame.z_scale
     rms = float(np.sqrt(np.mean(moved**2))) if len(moved) else 0.0
     return rms, float(np.abs(moved).max(initial=0.0))

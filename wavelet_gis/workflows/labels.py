@@ -15,7 +15,7 @@ from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.cloud_origin import PointSource
-from wavelet_gis.model.terrain_pyramid import PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.workflows.classify import NOT_KNOWN
 
 __all__ = ["cloud_with_classes", "labels_from_las", "labels_from_layer"]
@@ -29,12 +29,12 @@ UNLABELLED = (0, 1)
 _CLASS_BITS = 0b11111
 
 
-def labels_from_las(record: PyramidRecord, unlabelled: Sequence[int] = UNLABELLED) -> IntArray:
+def labels_from_las(geo: GeoPyramid, unlabelled: Sequence[int] = UNLABELLED) -> IntArray:
     """Return the class of every vertex as the LAS file has it.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Of a point cloud, its other dimensions carried or the classification lifted.
     unlabelled : sequence of int
         Classes that count as not known.
@@ -44,7 +44,7 @@ def labels_from_las(record: PyramidRecord, unlabelled: Sequence[int] = UNLABELLE
     OptionError
         The pyramid was not made from a point cloud, or its classes were dropped.
     """
-    source = record.source
+    source = geo.source
     if not isinstance(source, PointSource):
         raise OptionError(
             "the pyramid was not made from a point cloud, so it has no LAS classes; learn from a "
@@ -55,8 +55,8 @@ def labels_from_las(record: PyramidRecord, unlabelled: Sequence[int] = UNLABELLE
         is_kept = np.ones(source.n_points, dtype=bool)
         is_kept[source.dropped] = False
         classes = of_point[is_kept].astype(np.int64)
-    elif "classification" in record.pyramid.attribute_names:
-        mesh = record.pyramid.synthesise()
+    elif "classification" in geo.pyramid.attribute_names:
+        mesh = geo.pyramid.synthesise()
         column = mesh.attribute_names.index("classification")
         classes = np.rint(mesh.attributes[:, column]).astype(np.int64)
     else:
@@ -69,13 +69,13 @@ def labels_from_las(record: PyramidRecord, unlabelled: Sequence[int] = UNLABELLE
 
 
 def labels_from_layer(
-    record: PyramidRecord, path: str | os.PathLike[str], field: str, layer: str | None = None
+    geo: GeoPyramid, path: str | os.PathLike[str], field: str, layer: str | None = None
 ) -> IntArray:
     """Return the class that a layer's features give to the vertices they cover.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Whose vertices are labelled.
     path : path
         Any vector file that GDAL reads, in the CRS of the pyramid's input. Polygons label what is
@@ -102,13 +102,13 @@ def labels_from_layer(
         raise InputFileError(f"{name}: the labels cannot be read ({reason}).") from error
     if field not in list(with_crs["fields"]):
         raise InputFileError(f"{name}: there is no field {field!r}; name one with --field.")
-    _require_same_crs(record, name, with_crs["crs"])
+    _require_same_crs(geo, name, with_crs["crs"])
     classes = _whole_numbers(name, field, columns[0])
     shapes = shapely.from_wkb(geometry)
     kinds = set(shapely.get_type_id(shapes[~shapely.is_missing(shapes)]).tolist())
-    vertices = record.frame.to_file(record.pyramid.synthesise().vertices)
+    vertices = geo.frame.to_file(geo.pyramid.synthesise().vertices)
     if kinds and kinds <= {0, 4}:
-        labels = _near_points(record, shapes, classes)
+        labels = _near_points(geo, shapes, classes)
     elif kinds and kinds <= {3, 6}:
         labels = _inside_polygons(vertices, shapes, classes)
     else:
@@ -120,12 +120,12 @@ def labels_from_layer(
     return labels
 
 
-def cloud_with_classes(record: PyramidRecord, labels: IntArray) -> PointCloud:
+def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
     """Return the points that a pyramid was made from with other classes.
 
     Parameters
     ----------
-    record : PyramidRecord
+    geo : GeoPyramid
         Of a point cloud.
     labels : (n_vertices,) int64
         Below 0: the class stays. Points that share x and y with a vertex get its class.
@@ -136,10 +136,10 @@ def cloud_with_classes(record: PyramidRecord, labels: IntArray) -> PointCloud:
         The pyramid was not made from a point cloud, its classes were dropped, or a label is above
         what the point format holds (31 in formats 0 to 5).
     """
-    source = record.source
+    source = geo.source
     if not isinstance(source, PointSource):
         raise OptionError("the pyramid was not made from a point cloud; write .gpkg or .tif.")
-    cloud = cast(PointCloud, record.restore())
+    cloud = cast(PointCloud, geo.restore())
     is_kept = np.ones(source.n_points, dtype=bool)
     is_kept[source.dropped] = False
     of_point = np.full(source.n_points, NOT_KNOWN, dtype=np.int64)
@@ -188,12 +188,12 @@ def _require_at_most(classes: IntArray, largest: int) -> None:
         )
 
 
-def _require_same_crs(record: PyramidRecord, name: str, crs: str | None) -> None:
-    if crs is None or record.system.wkt is None:
+def _require_same_crs(geo: GeoPyramid, name: str, crs: str | None) -> None:
+    if crs is None or geo.system.wkt is None:
         return
     from pyproj import CRS
 
-    ours, theirs = CRS.from_wkt(record.system.wkt), CRS.from_user_input(crs)
+    ours, theirs = CRS.from_wkt(geo.system.wkt), CRS.from_user_input(crs)
     if not ours.to_2d().equals(theirs.to_2d(), ignore_axis_order=True):
         raise InputFileError(
             f"{name}: the labels are in {theirs.name}, the pyramid in {ours.name}; reproject the "
@@ -235,15 +235,15 @@ def _inside_polygons(
     return labels
 
 
-def _near_points(record: PyramidRecord, shapes: NDArray[Any], classes: IntArray) -> IntArray:
+def _near_points(geo: GeoPyramid, shapes: NDArray[Any], classes: IntArray) -> IntArray:
     import shapely
     from scipy.spatial import cKDTree
 
     points, owner = shapely.get_coordinates(shapes, return_index=True)
-    frame = record.frame
+    frame = geo.frame
     local = np.column_stack([frame.local_x(points[:, 0]), frame.local_y(points[:, 1])])
-    plan = record.pyramid.synthesise().vertices[:, :2]
-    reach = 2 * float(level_spacings(record.pyramid)[-1])
+    plan = geo.pyramid.synthesise().vertices[:, :2]
+    reach = 2 * float(level_spacings(geo.pyramid)[-1])
     distance, vertex = cKDTree(plan).query(local)
     labels = np.full(len(plan), NOT_KNOWN, dtype=np.int64)
     near = distance <= reach

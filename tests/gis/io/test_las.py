@@ -14,9 +14,9 @@ from wavelet_gis.workflows.open import open_terrain
 
 def through_a_pyramid(path, out, *, signal="z", **options):
     terrain = open_terrain(path, **options)
-    record = terrain.record(analyse(terrain.mesh, levels=3, signal=signal))
-    write_cloud(out, record.restore())
-    return record
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=3, signal=signal))
+    write_cloud(out, geo.restore())
+    return geo
 
 
 FORMATS = [
@@ -74,11 +74,11 @@ def test_attributes_are_physical_values(las):
 
 
 def test_duplicates_are_one_vertex_and_two_points_again(las, tmp_path):
-    record = through_a_pyramid(las, tmp_path / "out.laz", attributes=["intensity"])
+    geo = through_a_pyramid(las, tmp_path / "out.laz", attributes=["intensity"])
     n_points = laspy.read(las).header.point_count
-    assert record.source.n_points == n_points
-    assert len(record.source.dropped) == 20
-    assert record.source.n_vertices == n_points - 20
+    assert geo.source.n_points == n_points
+    assert len(geo.source.dropped) == 20
+    assert geo.source.n_vertices == n_points - 20
     assert_same_cloud(las, tmp_path / "out.laz")
 
 
@@ -105,11 +105,11 @@ def test_height_above_ground_becomes_a_dimension(las, tmp_path):
 
 
 def test_a_class_filter_chooses_points_and_not_the_ground(las, tmp_path):
-    record = through_a_pyramid(las, tmp_path / "out.las", attributes=["hag"], classes=[5])
+    geo = through_a_pyramid(las, tmp_path / "out.las", attributes=["hag"], classes=[5])
     before, after = laspy.read(las), laspy.read(tmp_path / "out.las")
     trees = before.points[np.asarray(before.classification) == 5]
-    assert record.source.cloud.classes == (5,)
-    assert record.source.cloud.n_in_file == len(before)
+    assert geo.source.cloud.classes == (5,)
+    assert geo.source.cloud.n_in_file == len(before)
     assert (after.X == trees.X).all()
     assert (after.gps_time == trees["gps_time"]).all()
     assert np.asarray(after.hag).min() > 1
@@ -158,8 +158,8 @@ def test_array_dimensions_and_clashing_names(tmp_path):
     order = np.lexsort(terrain.mesh.vertices.T[:2])
     expected = np.asarray(las.pair)[np.lexsort((las.x, las.y))]
     np.testing.assert_allclose(terrain.mesh.attributes[order][:, 5:], expected)
-    record = terrain.record(analyse(terrain.mesh, levels=2))
-    write_cloud(tmp_path / "out.las", record.restore())
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=2))
+    write_cloud(tmp_path / "out.las", geo.restore())
     assert (tmp_path / "out.las").stat().st_size == path.stat().st_size
     assert laspy.read(path).points.array.tobytes() == (
         laspy.read(tmp_path / "out.las").points.array.tobytes()

@@ -12,7 +12,7 @@ from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid_file import read_pyramid, read_summary, write_pyramid
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.dem import Dem
-from wavelet_gis.model.terrain_pyramid import MeshSource, PyramidRecord
+from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource
 
 
 def assert_same_pyramid(actual, expected):
@@ -34,7 +34,7 @@ def assert_same_pyramid(actual, expected):
 
 
 def record_of(mesh, **options):
-    return PyramidRecord(
+    return GeoPyramid(
         pyramid=analyse(mesh, **options),
         system=CoordinateSystem(),
         frame=LocalFrame(),
@@ -46,13 +46,13 @@ def record_of(mesh, **options):
 
 @pytest.mark.parametrize("name", ["raster", "cloud"])
 def test_all_of_it_is_read_again(name, request):
-    record = request.getfixturevalue(f"{name}_record")
+    geo = request.getfixturevalue(f"{name}_record")
     back = read_pyramid(request.getfixturevalue(f"{name}_pyramid"))
-    assert_same_pyramid(back.pyramid, record.pyramid)
-    assert back.system == record.system
-    assert back.frame == record.frame
-    assert back.errors == record.errors
-    assert back.source.checksum == record.source.checksum
+    assert_same_pyramid(back.pyramid, geo.pyramid)
+    assert back.system == geo.system
+    assert back.frame == geo.frame
+    assert back.errors == geo.errors
+    assert back.source.checksum == geo.source.checksum
     assert isinstance(back.restore(), Dem if name == "raster" else PointCloud)
 
 
@@ -60,10 +60,10 @@ def test_all_of_it_is_read_again(name, request):
 @pytest.mark.parametrize("signal", ["z", "xyz"])
 def test_every_filter_and_signal(tmp_path, signal, design):
     design = design.replace("ULMO", "UGMO")
-    record = record_of(hills(12, 15), levels=3, prediction=design, signal=signal)
-    write_pyramid(tmp_path / "a.gpkg", record)
+    geo = record_of(hills(12, 15), levels=3, prediction=design, signal=signal)
+    write_pyramid(tmp_path / "a.gpkg", geo)
     back = read_pyramid(tmp_path / "a.gpkg")
-    assert_same_pyramid(back.pyramid, record.pyramid)
+    assert_same_pyramid(back.pyramid, geo.pyramid)
     restored = back.restore()
     assert isinstance(restored, TriangleMesh)
     np.testing.assert_allclose(restored.vertices, hills(12, 15).vertices, atol=1e-9)
@@ -72,9 +72,9 @@ def test_every_filter_and_signal(tmp_path, signal, design):
 def test_locked_vertices_and_no_levels(tmp_path):
     mesh = hills(10, 10)
     locked = np.arange(mesh.n_vertices) % 3 == 0
-    for k, record in enumerate([record_of(mesh, locked=locked), record_of(mesh, levels=0)]):
-        write_pyramid(tmp_path / f"{k}.gpkg", record)
-        assert_same_pyramid(read_pyramid(tmp_path / f"{k}.gpkg").pyramid, record.pyramid)
+    for k, geo in enumerate([record_of(mesh, locked=locked), record_of(mesh, levels=0)]):
+        write_pyramid(tmp_path / f"{k}.gpkg", geo)
+        assert_same_pyramid(read_pyramid(tmp_path / f"{k}.gpkg").pyramid, geo.pyramid)
 
 
 def test_vertices_of_no_face(tmp_path):
@@ -82,8 +82,8 @@ def test_vertices_of_no_face(tmp_path):
     valid = np.ones((6, 6), bool)
     valid[:2, 1] = valid[1, 0] = False  # the corner cell stands alone
     mesh = TriangleMesh.from_grid(grid, np.arange(6.0), np.arange(6.0), valid=valid)
-    record = record_of(mesh, levels=2)
-    write_pyramid(tmp_path / "a.gpkg", record)
+    geo = record_of(mesh, levels=2)
+    write_pyramid(tmp_path / "a.gpkg", geo)
     assert read_pyramid(tmp_path / "a.gpkg").restore().n_vertices == 33
 
 
@@ -143,7 +143,7 @@ LIGHT = [
     "model.exact_restore",
     "io.array_codec",
     "io.geopackage",
-    "model.terrain_pyramid",
+    "model.geo_pyramid",
     "io.pyramid_file",
     "products.layers",
     "products.styles",
@@ -174,9 +174,9 @@ for name in {LIGHT!r}:
     __import__("wavelet_gis." + name)
 from wavelet_gis.io.pyramid_file import read_pyramid
 from wavelet_gis.products.layers import coarse_layers
-record = read_pyramid({str(raster_pyramid)!r})
-assert len(list(coarse_layers(record))) == 2
-print(record.restore().values.shape)
+geo = read_pyramid({str(raster_pyramid)!r})
+assert len(list(coarse_layers(geo))) == 2
+print(geo.restore().values.shape)
 """
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert result.stdout.strip() == "(40, 50)", result.stderr

@@ -20,8 +20,8 @@ TRANSFORMS = {
 
 def through_a_pyramid(path, out, **options):
     terrain = open_terrain(path, **options)
-    record = terrain.record(analyse(terrain.mesh, levels=3))
-    write_dem(out, record.restore(), record.system.wkt)
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=3))
+    write_dem(out, geo.restore(), geo.system.wkt)
 
 
 @pytest.mark.parametrize("name", TRANSFORMS)

@@ -50,19 +50,19 @@ def is_large(path):
 
 
 def through_a_file(path, folder, attributes=()):
-    """Return the record read from the pyramid file that was made of ``path``."""
+    """Return the pyramid read from the pyramid file that was made of ``path``."""
     terrain = open_terrain(path, attributes=attributes)
     n_levels = 1 if terrain.mesh.n_vertices > 300_000 else 3
-    record = terrain.record(analyse(terrain.mesh, levels=n_levels))
-    write_pyramid(folder / "a.gpkg", record)
-    del terrain, record
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=n_levels))
+    write_pyramid(folder / "a.gpkg", geo)
+    del terrain, geo
     return read_pyramid(folder / "a.gpkg")
 
 
 @pytest.mark.parametrize("path", files("dems", ".tif"))
 def test_every_dem(path, tmp_path):
-    record = through_a_file(path, tmp_path)
-    write_dem(tmp_path / "out.tif", record.restore(), record.system.wkt)
+    geo = through_a_file(path, tmp_path)
+    write_dem(tmp_path / "out.tif", geo.restore(), geo.system.wkt)
     assert_same_raster(path, tmp_path / "out.tif")
     os.remove(tmp_path / "a.gpkg")
 
@@ -70,8 +70,8 @@ def test_every_dem(path, tmp_path):
 @pytest.mark.parametrize("path", files("clouds", ".las", ".laz"))
 def test_every_cloud(path, tmp_path):
     attributes = ["classification", "intensity", "return_number"]
-    record = through_a_file(path, tmp_path, attributes)
-    write_cloud(tmp_path / f"out{path.suffix}", record.restore())
+    geo = through_a_file(path, tmp_path, attributes)
+    write_cloud(tmp_path / f"out{path.suffix}", geo.restore())
     assert_same_cloud(path, tmp_path / f"out{path.suffix}")
     os.remove(tmp_path / "a.gpkg")
 
@@ -83,8 +83,8 @@ def test_height_above_ground_and_colour(data_folder, tmp_path, name):
 
     path = data_folder / "clouds" / name
     colours = ["red", "green"] if name.startswith("autzen") else []
-    record = through_a_file(path, tmp_path, ["hag", "classification", *colours])
-    write_cloud(tmp_path / "out.laz", record.restore())
+    geo = through_a_file(path, tmp_path, ["hag", "classification", *colours])
+    write_cloud(tmp_path / "out.laz", geo.restore())
     before, after = laspy.read(path), laspy.read(tmp_path / "out.laz")
     for dimension in before.point_format.dimension_names:
         assert (np.asarray(after[dimension]) == np.asarray(before[dimension])).all(), dimension
@@ -131,19 +131,19 @@ def test_every_nasty_file_works_or_is_refused(path, tmp_path, recwarn):
             open_terrain(path)
         assert path.name in str(caught.value)
         return
-    record = through_a_file(path, tmp_path)
+    geo = through_a_file(path, tmp_path)
     warned = [str(w.message) for w in recwarn if issubclass(w.category, TerrainWarning)]
     if path.name in WARNED:
         assert any(WARNED[path.name] in text for text in warned), warned
     else:
         assert warned == []
     if path.suffix == ".tif":
-        write_dem(tmp_path / "out.tif", record.restore(), record.system.wkt)
+        write_dem(tmp_path / "out.tif", geo.restore(), geo.system.wkt)
         assert_same_raster(path, tmp_path / "out.tif")
         return
     import laspy
 
-    write_cloud(tmp_path / f"out{path.suffix}", record.restore())
+    write_cloud(tmp_path / f"out{path.suffix}", geo.restore())
     before, after = laspy.read(path), laspy.read(tmp_path / f"out{path.suffix}")
     assert after.points.array.tobytes() == before.points.array.tobytes()
     assert list(after.header.scales) == list(before.header.scales)
@@ -168,8 +168,8 @@ def test_bands_of_nasty_rasters(data_folder, name, band, what):
 def test_a_band_of_a_picture(data_folder, tmp_path):
     path = data_folder / "nasty" / "nocrs_3band_u8.tif"
     terrain = open_terrain(path, band=1)
-    record = terrain.record(analyse(terrain.mesh, levels=2))
-    write_dem(tmp_path / "out.tif", record.restore(), record.system.wkt)
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=2))
+    write_dem(tmp_path / "out.tif", geo.restore(), geo.system.wkt)
     assert_same_raster(path, tmp_path / "out.tif", band=1)
 
 

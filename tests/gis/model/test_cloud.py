@@ -33,7 +33,9 @@ def cloud(rng):
 @pytest.fixture
 def parts(cloud):
     mesh, source = cloud_mesh(cloud, LocalFrame())
-    return source.with_ledger(cloud, analyse(mesh, levels=2).synthesise(), LocalFrame()).to_parts()
+    return source.with_corrections(
+        cloud, analyse(mesh, levels=2).synthesise(), LocalFrame()
+    ).to_parts()
 
 
 def test_the_largest_integers_come_back(rng):
@@ -43,7 +45,7 @@ def test_the_largest_integers_come_back(rng):
     cloud = cloud_of(integers, scales=(1e-7, 1e-7, 1e-7))
     mesh, source = cloud_mesh(cloud, LocalFrame())
     finest = analyse(mesh, levels=2).synthesise()
-    back = source.with_ledger(cloud, finest, LocalFrame()).restore(finest, LocalFrame())
+    back = source.with_corrections(cloud, finest, LocalFrame()).restore(finest, LocalFrame())
     assert (back.integers == cloud.integers).all()
 
 
@@ -53,13 +55,13 @@ def test_negative_scales_are_coordinates_too(rng):
     assert west < east
     assert south < north
     mesh, source = cloud_mesh(cloud, LocalFrame())
-    back = source.with_ledger(cloud, mesh, LocalFrame()).restore(mesh, LocalFrame())
+    back = source.with_corrections(cloud, mesh, LocalFrame()).restore(mesh, LocalFrame())
     assert (back.integers == cloud.integers).all()
 
 
 def test_an_altered_pyramid_moves_duplicates_with_their_vertex(cloud):
     mesh, source = cloud_mesh(cloud, LocalFrame())
-    source = source.with_ledger(cloud, mesh, LocalFrame()).altered()
+    source = source.with_corrections(cloud, mesh, LocalFrame()).altered()
     raised = TriangleMesh(
         mesh.vertices + np.array([0, 0, 3.0]), mesh.faces, mesh.attributes, mesh.attribute_names
     )
@@ -81,7 +83,7 @@ def test_altered_attributes_stay_in_their_range(cloud):
 
 def test_another_mesh_is_no_original(cloud):
     mesh, source = cloud_mesh(cloud, LocalFrame())
-    source = source.with_ledger(cloud, mesh, LocalFrame())
+    source = source.with_corrections(cloud, mesh, LocalFrame())
     raised = TriangleMesh(
         mesh.vertices + np.array([0, 0, 3.0]), mesh.faces, mesh.attributes, mesh.attribute_names
     )

@@ -26,11 +26,11 @@ def dem_of(values, transform=NORTH_UP, **fields):
     return Dem(values, geometry=GridGeometry(values.shape, transform), **fields)
 
 
-def source_with_ledger(dem, frame=None, levels=3):
+def source_with_corrections(dem, frame=None, levels=3):
     frame = frame or LocalFrame()
     mesh = dem_mesh(dem, frame)
     pyramid = analyse(mesh, levels=levels)
-    return RasterSource.from_dem(dem).with_ledger(dem, pyramid.synthesise(), frame), pyramid
+    return RasterSource.from_dem(dem).with_corrections(dem, pyramid.synthesise(), frame), pyramid
 
 
 @pytest.mark.parametrize("transform", [NORTH_UP, SOUTH_UP, ROTATED])
@@ -89,7 +89,7 @@ def test_any_raster_with_any_holes_comes_back_bit_for_bit(values, data, transfor
     valid = data.draw(hnp.arrays(bool, values.shape))
     valid[:2, :2] = True
     dem = dem_of(values, transform, valid=valid)
-    source, pyramid = source_with_ledger(dem)
+    source, pyramid = source_with_corrections(dem)
     back = source.restore(pyramid.synthesise(), LocalFrame())
     assert back.values.tobytes() == values.tobytes()
     assert (back.valid == valid).all()
@@ -100,7 +100,7 @@ def test_holes_keep_whatever_they_held():
     values[1, 1], values[2, 2], values[3, 3] = np.nan, np.inf, -np.inf
     values[4, 4] = np.frombuffer(b"\x01\0\0\0\0\0\xf8\x7f")[0]  # another NaN
     dem = dem_of(values)
-    source, pyramid = source_with_ledger(dem)
+    source, pyramid = source_with_corrections(dem)
     assert source.restore(pyramid.synthesise(), LocalFrame()).values.tobytes() == values.tobytes()
 
 
@@ -113,14 +113,14 @@ def test_scale_offset_and_vertical_unit_are_undone(unit):
     np.testing.assert_allclose(
         mesh.vertices[:, 2], (stored.ravel() * 0.1 - 7.0) * frame.z_scale, rtol=1e-14
     )
-    source, pyramid = source_with_ledger(dem, frame)
+    source, pyramid = source_with_corrections(dem, frame)
     assert source.restore(pyramid.synthesise(), frame).values.tobytes() == stored.tobytes()
 
 
 def test_an_altered_pyramid_gives_altered_cells_that_stay_data():
     values = np.rint(hills()).astype("i2")
     dem = dem_of(values, nodata=int(values[0, 0]) + 1)
-    source, pyramid = source_with_ledger(dem)
+    source, pyramid = source_with_corrections(dem)
     finest = pyramid.synthesise()
     raised = type(finest)(finest.vertices + np.array([0, 0, 1.0]), finest.faces)
     back = source.altered().restore(raised, LocalFrame())
@@ -132,7 +132,7 @@ def test_an_altered_pyramid_gives_altered_cells_that_stay_data():
 
 def test_another_mesh_is_no_original():
     dem = dem_of(hills())
-    source, pyramid = source_with_ledger(dem)
+    source, pyramid = source_with_corrections(dem)
     with pytest.raises(PyramidError, match="finest"):
         source.restore(pyramid.mesh(0), LocalFrame())
     finest = pyramid.synthesise()
@@ -147,7 +147,7 @@ def test_nothing_but_nodata_is_refused():
 
 
 def parts_of(dem):
-    source, _ = source_with_ledger(dem)
+    source, _ = source_with_corrections(dem)
     return source.to_parts()
 
 

@@ -75,7 +75,7 @@ def test_signed_zero_and_nan_payload_free_values():
 
 
 def test_values_that_are_not_near_stay_wrong():
-    # The ledger mends rounding; it must not hide that the pyramid is another one.
+    # The corrections make up for rounding; it must not hide that the pyramid is another one.
     original = np.linspace(0, 100, 50)
     column = exact_column(original, original + 1e-12)
     assert not same_bits(column.restore(original + 0.5), original)

@@ -15,15 +15,15 @@ from wavelet_gis.products.wkb import points_wkb, triangles_wkb
 
 
 @pytest.fixture(scope="module", params=["raster", "cloud"])
-def record(request):
+def geo(request):
     return request.getfixturevalue(f"{request.param}_record")
 
 
 @pytest.fixture(scope="module")
-def geopackage(record, tmp_path_factory):
+def geopackage(geo, tmp_path_factory):
     path = tmp_path_factory.mktemp("layers") / "pyramid.gpkg"
-    write_pyramid(path, record)
-    add_layers(path, [*coarse_layers(record), *detail_layers(record)], record.system)
+    write_pyramid(path, geo)
+    add_layers(path, [*coarse_layers(geo), *detail_layers(geo)], geo.system)
     return path
 
 
@@ -43,9 +43,9 @@ def test_it_is_a_valid_geopackage(geopackage, validate_gpkg):
     validate_gpkg(geopackage)
 
 
-def test_every_layer_is_there_and_has_its_geometry(record, geopackage):
+def test_every_layer_is_there_and_has_its_geometry(geo, geopackage):
     layers = dict(pyogrio.list_layers(geopackage))
-    details = {f"detail_level_{k:02d}": "Point Z" for k in range(record.pyramid.n_levels)}
+    details = {f"detail_level_{k:02d}": "Point Z" for k in range(geo.pyramid.n_levels)}
     tables = ["metadata", "levels", "arrays", "chunks"]
     assert layers == {
         "coarse_tin": "Polygon Z",
@@ -65,29 +65,29 @@ def read(geopackage, layer):
     return shapely.from_wkb(geometry), dict(zip(meta["fields"], fields, strict=True))
 
 
-def test_the_coarse_tin_is_the_coarsest_mesh(record, geopackage):
-    mesh = record.file_mesh(record.pyramid.mesh(0))
+def test_the_coarse_tin_is_the_coarsest_mesh(geo, geopackage):
+    mesh = geo.file_mesh(geo.pyramid.mesh(0))
     polygons, fields = read(geopackage, "coarse_tin")
     corners = shapely.get_coordinates(polygons, include_z=True).reshape(-1, 4, 3)[:, :3]
     assert (corners == mesh.vertices[mesh.faces]).all()
     np.testing.assert_allclose(fields["elevation"], corners[:, :, 2].mean(axis=1))
-    ids = record.pyramid.vertex_ids(0)
+    ids = geo.pyramid.vertex_ids(0)
     assert (fields["vertex_b"] == ids[mesh.faces[:, 1]]).all()
     assert (0 <= fields["slope"]).all()
     assert (fields["slope"] < 90).all()
 
 
-def test_the_vertices_carry_ids_and_attributes(record, geopackage):
+def test_the_vertices_carry_ids_and_attributes(geo, geopackage):
     points, fields = read(geopackage, "coarse_vertices")
-    mesh = record.file_mesh(record.pyramid.mesh(0))
+    mesh = geo.file_mesh(geo.pyramid.mesh(0))
     assert (shapely.get_coordinates(points, include_z=True) == mesh.vertices).all()
-    assert (fields["vertex_id"] == record.pyramid.vertex_ids(0)).all()
+    assert (fields["vertex_id"] == geo.pyramid.vertex_ids(0)).all()
     for k, name in enumerate(mesh.attribute_names):
         assert (fields[name] == mesh.attributes[:, k]).all()
 
 
-def test_details_lie_at_the_removed_vertices(record, geopackage):
-    pyramid = record.pyramid
+def test_details_lie_at_the_removed_vertices(geo, geopackage):
+    pyramid = geo.pyramid
     for level in range(pyramid.n_levels):
         detail = pyramid.detail(level)
         points, fields = read(geopackage, f"detail_level_{level:02d}")

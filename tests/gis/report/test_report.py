@@ -119,8 +119,8 @@ def test_the_pictures_are_pngs(page):
 
 
 def test_names_from_strangers_are_text_only(raster_record):
-    record = replace(raster_record, source_name="</script><img src=x onerror=alert(1)>.tif")
-    page, _ = report_page(record)
+    geo = replace(raster_record, source_name="</script><img src=x onerror=alert(1)>.tif")
+    page, _ = report_page(geo)
     assert "<img src=x" not in page
     assert page.count("</script>") == 1
 

@@ -38,7 +38,7 @@ pytest.importorskip("sklearn")
 
 @pytest.fixture(scope="module")
 def halves():
-    """Return the record of a DEM that is smooth in the west and rough in the east."""
+    """Return the pyramid of a DEM that is smooth in the west and rough in the east."""
     rng = np.random.default_rng(0)
     _, x = np.mgrid[0:60, 0:80]
     z = 100 + 5 * np.sin(x / 20) + np.where(x >= 40, rng.normal(0, 2.0, x.shape), 0.0)
@@ -47,11 +47,13 @@ def halves():
     dem = Dem(z, np.ones(z.shape, dtype=bool), geometry)
     with pytest.warns(UserWarning, match="no CRS"):
         terrain = terrain_of_dem("halves", dem, CoordinateSystem())
-    return terrain.record(analyse(terrain.mesh, levels=6, partition="random", prediction="plane"))
+    return terrain.geo_pyramid(
+        analyse(terrain.mesh, levels=6, partition="random", prediction="plane")
+    )
 
 
-def is_east(record):
-    return record.pyramid.synthesise().vertices[:, 0] > 40
+def is_east(geo):
+    return geo.pyramid.synthesise().vertices[:, 0] > 40
 
 
 @pytest.mark.parametrize("method", ["kmeans", "mixture"])
@@ -190,11 +192,11 @@ def test_without_scikit_learn_the_remedy_is_told(halves, monkeypatch):
 def test_las_classes_go_out_and_come_back(tmp_path, version, point_format):
     path = write_las(tmp_path / "a.las", version=version, point_format=point_format)
     terrain = open_terrain(path)
-    record = terrain.record(analyse(terrain.mesh, levels=2))
-    labels = labels_from_las(record)
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=2))
+    labels = labels_from_las(geo)
     assert set(labels.tolist()) == {2, 5}
     swapped = np.where(labels == 2, 6, NOT_KNOWN)
-    cloud = cloud_with_classes(record, swapped)
+    cloud = cloud_with_classes(geo, swapped)
     from wavelet_gis.io.las import write_cloud
 
     write_cloud(tmp_path / "b.las", cloud)
@@ -205,21 +207,21 @@ def test_las_classes_go_out_and_come_back(tmp_path, version, point_format):
     np.testing.assert_array_equal(before.gps_time, after.gps_time)
     np.testing.assert_array_equal(before.return_number, after.return_number)
     is_vertex = np.ones(400, dtype=bool)
-    is_vertex[record.source.dropped] = False
+    is_vertex[geo.source.dropped] = False
     was, now = np.array(before.classification), np.array(after.classification)
     np.testing.assert_array_equal(now[is_vertex], np.where(was[is_vertex] == 2, 6, 5))
     # a point without a vertex of its own goes with the one at its place
     kept = np.flatnonzero(is_vertex)
-    stand_in = kept[record.source.representative]
+    stand_in = kept[geo.source.representative]
     changed = was[stand_in] == 2
-    assert (now[record.source.dropped][changed] == 6).all()
+    assert (now[geo.source.dropped][changed] == 6).all()
 
 
 def test_unlabelled_classes_are_not_known(tmp_path):
     path = write_las(tmp_path / "a.las")
     terrain = open_terrain(path)
-    record = terrain.record(analyse(terrain.mesh, levels=1))
-    labels = labels_from_las(record, unlabelled=(5,))
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=1))
+    labels = labels_from_las(geo, unlabelled=(5,))
     assert set(labels.tolist()) == {2, NOT_KNOWN}
 
 
@@ -233,9 +235,9 @@ def test_classes_that_are_not_there_are_refused(halves, tmp_path):
     with pytest.raises(OptionError, match="not made from a point cloud"):
         cloud_with_classes(halves, np.zeros(4800, dtype=np.int64))
     terrain = open_terrain(write_las(tmp_path / "a.las"), carry=False)
-    record = terrain.record(analyse(terrain.mesh, levels=1))
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=1))
     with pytest.raises(OptionError, match="without --drop-other-dimensions"):
-        labels_from_las(record)
+        labels_from_las(geo)
 
 
 def write_layer(path, shapes, classes, crs=None):

@@ -18,12 +18,12 @@ from wavelet_gis.workflows.open import open_terrain
 
 @pytest.fixture(scope="module")
 def feet_record(tmp_path_factory):
-    """Return the record of a DEM in feet, whose levels are bands of sizes."""
+    """Return the pyramid of a DEM in feet, whose levels are bands of sizes."""
     path = write_tif(
         tmp_path_factory.mktemp("feet") / "feet.tif", hills().astype("f4"), crs="EPSG:2226"
     )
     terrain = open_terrain(path)
-    return terrain.record(analyse(terrain.mesh, levels=3, partition="random"))
+    return terrain.geo_pyramid(analyse(terrain.mesh, levels=3, partition="random"))
 
 
 def test_a_band_in_metres_and_single_gains_multiply(feet_record):
@@ -61,7 +61,7 @@ def test_noise_in_units_of_the_input_moves_z_in_units_of_the_input(tmp_path):
     z = 1000 + np.random.default_rng(0).normal(0, 0.5, (30, 30))  # a plain with noise, in feet
     path = write_tif(tmp_path / "plain.tif", z, crs="EPSG:2226")
     terrain = open_terrain(path)
-    record = terrain.record(analyse(terrain.mesh, levels=4, partition="random"))
-    clean, sigmas = denoised_record(record, n_pyramids=2)
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=4, partition="random"))
+    clean, sigmas = denoised_record(geo, n_pyramids=2)
     assert sigmas["z"] == pytest.approx(0.5, rel=0.15)
-    assert change_between(record, clean)[0] == pytest.approx(0.5, rel=0.25)
+    assert change_between(geo, clean)[0] == pytest.approx(0.5, rel=0.25)

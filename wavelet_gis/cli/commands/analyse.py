@@ -17,8 +17,8 @@ from wavelet_gis.cli.commands._options import (
 from wavelet_gis.cli.console import Console
 
 if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.model.terrain import Terrain
-    from wavelet_gis.model.terrain_pyramid import PyramidRecord
 
 HELP = "Turn a DEM or a LAS/LAZ file into a reversible wavelet pyramid in one GeoPackage."
 
@@ -81,31 +81,31 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     with console.progress("analysing") as progress:
         pyramid = analyse(terrain.mesh, **rules, **analysis_options(arguments), progress=progress)
     clock.lap("analyse")
-    record = terrain.record(pyramid)
+    geo = terrain.geo_pyramid(pyramid)
     clock.lap("verify")
     if not arguments.no_errors:
-        record = record.with_errors()
+        geo = geo.with_errors()
         clock.lap("errors")
     n_triangles = terrain.mesh.n_faces
-    del terrain, pyramid  # the input is in the record now; large ones need the memory
+    del terrain, pyramid  # the input is in the pyramid now; large ones need the memory
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        _write(scratch, record, console, arguments.layers)
+        _write(scratch, geo, console, arguments.layers)
     clock.lap("write")
-    _report(arguments, record, n_triangles, clock.laps, console)
+    _report(arguments, geo, n_triangles, clock.laps, console)
 
 
-def _write(path: Any, record: PyramidRecord, console: Console, layers: str) -> None:
+def _write(path: Any, geo: GeoPyramid, console: Console, layers: str) -> None:
     from wavelet_gis.io.pyramid_file import write_pyramid
     from wavelet_gis.io.vector import add_layers
     from wavelet_gis.products.layers import coarse_layers, detail_layers
 
     with console.progress("writing") as progress:
-        write_pyramid(path, record, progress)
+        write_pyramid(path, geo, progress)
     if layers == "none":
         return
-    details = detail_layers(record) if layers == "all" else ()
+    details = detail_layers(geo) if layers == "all" else ()
     with console.progress("layers"):
-        add_layers(path, chain(coarse_layers(record), details), record.system)
+        add_layers(path, chain(coarse_layers(geo), details), geo.system)
 
 
 def _tell_frame(terrain: Terrain, console: Console) -> None:
@@ -120,19 +120,19 @@ def _tell_frame(terrain: Terrain, console: Console) -> None:
 
 def _report(
     arguments: argparse.Namespace,
-    record: PyramidRecord,
+    geo: GeoPyramid,
     n_triangles: int,
     laps: dict[str, float],
     console: Console,
 ) -> None:
     import os
 
-    pyramid = record.pyramid
+    pyramid = geo.pyramid
     n_vertices, n_coarse = pyramid.n_vertices(pyramid.n_levels), pyramid.n_vertices(0)
-    if record.errors is not None:
+    if geo.errors is not None:
         console.table(
             ("level", "vertices", "triangles", "rmse_coefficients", "rmse_surface", "max_error"),
-            [tuple(level)[:6] for level in record.errors],
+            [tuple(level)[:6] for level in geo.errors],
         )
     console.say(
         f"{n_vertices:,} vertices and {n_triangles:,} triangles in {pyramid.n_levels} levels down "
@@ -148,7 +148,7 @@ def _report(
             "n_coarse_vertices": n_coarse,
             "channels": list(pyramid.channels),
             "parameters": dict(pyramid.parameters),
-            "levels": [level._asdict() for level in record.errors or ()],
+            "levels": [level._asdict() for level in geo.errors or ()],
             "seconds": {name: round(seconds, 3) for name, seconds in laps.items()},
         }
     )

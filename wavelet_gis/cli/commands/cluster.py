@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from wavelet_gis.model.terrain_pyramid import PyramidRecord
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 HELP = "Cluster the vertices by their scales, or learn classes and predict the rest."
 
@@ -97,12 +97,12 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     )
     if suffix in CLOUD_SUFFIXES and arguments.learn is None:
         raise OptionError("clusters are no LAS classes; write .gpkg or .tif, or use --learn.")
-    record = read_pyramid(arguments.file)
+    geo = read_pyramid(arguments.file)
     find = _clusters if arguments.learn is None else _classes
-    labels, confidence, figures = find(record, arguments, console)
+    labels, confidence, figures = find(geo, arguments, console)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        _write(scratch, record, labels, confidence, arguments)
-    summary = cluster_summary(record, labels)
+        _write(scratch, geo, labels, confidence, arguments)
+    summary = cluster_summary(geo, labels)
     word = "cluster" if arguments.learn is None else "class"
     rows = [
         (row["label"], row["n_vertices"], f"{row['share']:.1%}", *map(float, row["rms"][::-1][:8]))
@@ -115,13 +115,13 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
 
 
 def _clusters(
-    record: PyramidRecord, arguments: argparse.Namespace, console: Console
+    geo: GeoPyramid, arguments: argparse.Namespace, console: Console
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], dict[str, Any]]:
     from wavelet_core.features.signature import energy_signature
     from wavelet_gis.workflows.classify import cluster_vertices
 
     with console.progress("spectrum") as progress:
-        signature = energy_signature(record.pyramid, arguments.channels, progress)
+        signature = energy_signature(geo.pyramid, arguments.channels, progress)
     clusters = cluster_vertices(signature, arguments.count, arguments.method, arguments.seed)
     figures = {
         "method": arguments.method,
@@ -132,7 +132,7 @@ def _clusters(
 
 
 def _classes(
-    record: PyramidRecord, arguments: argparse.Namespace, console: Console
+    geo: GeoPyramid, arguments: argparse.Namespace, console: Console
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], dict[str, Any]]:
     import numpy as np
 
@@ -146,17 +146,15 @@ def _classes(
     from wavelet_gis.workflows.labels import labels_from_las, labels_from_layer
 
     if arguments.learn == "las":
-        given = labels_from_las(record, arguments.unlabelled)
+        given = labels_from_las(geo, arguments.unlabelled)
     else:
-        given = labels_from_layer(record, arguments.learn, arguments.field)
+        given = labels_from_layer(geo, arguments.learn, arguments.field)
     given = merge_labels(given, arguments.merge)
     with console.progress("spectrum") as progress:
-        features = scale_features(record.pyramid, progress).joined_to(
-            plain_features(record.pyramid)
-        )
+        features = scale_features(geo.pyramid, progress).joined_to(plain_features(geo.pyramid))
     figures: dict[str, Any] = {"n_labelled": int(np.count_nonzero(given >= 0))}
     if arguments.validate:
-        plan = record.pyramid.synthesise().vertices[:, :2]
+        plan = geo.pyramid.synthesise().vertices[:, :2]
         validation = validate_classes(features, given, spatial_folds(plan), arguments.seed)
         figures["validation"] = validation.as_dict()
         console.say(f"accuracy in blocks of the map left out: {validation.accuracy:.1%}")
@@ -174,7 +172,7 @@ def _classes(
 
 def _write(
     path: str | os.PathLike[str],
-    record: PyramidRecord,
+    geo: GeoPyramid,
     labels: NDArray[np.int64],
     confidence: NDArray[np.float64],
     arguments: argparse.Namespace,
@@ -189,13 +187,13 @@ def _write(
         from wavelet_gis.io.las import write_cloud
         from wavelet_gis.workflows.labels import cloud_with_classes
 
-        write_cloud(path, cloud_with_classes(record, labels))
+        write_cloud(path, cloud_with_classes(geo, labels))
     elif suffix in RASTER_SUFFIXES:
-        mesh = record.pyramid.synthesise()
-        bands = label_band(record, mesh, labels, name, arguments.cell_size)
-        write_bands(path, bands, record.system.wkt)
+        mesh = geo.pyramid.synthesise()
+        bands = label_band(geo, mesh, labels, name, arguments.cell_size)
+        write_bands(path, bands, geo.system.wkt)
     else:
-        add_layers(path, [label_layer(record, labels, confidence, name)], record.system)
+        add_layers(path, [label_layer(geo, labels, confidence, name)], geo.system)
 
 
 def _names(text: str) -> tuple[str, ...]:

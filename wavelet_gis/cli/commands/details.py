@@ -11,7 +11,7 @@ from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
 
 if TYPE_CHECKING:
-    from wavelet_gis.model.terrain_pyramid import PyramidRecord
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 HELP = "Write what each band of scales holds: as points (GPKG), raster bands (TIF) or a picture."
 
@@ -65,23 +65,23 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     if arguments.level is not None and arguments.what != "shape":
         raise OptionError("--level is for --what shape; leave it out, or ask for the shape.")
     suffix = Path(arguments.output).suffix.lower()
-    record = read_pyramid(arguments.file)
+    geo = read_pyramid(arguments.file)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if suffix in RASTER_SUFFIXES:
-            figures = _write_raster(scratch, record, arguments, console)
+            figures = _write_raster(scratch, geo, arguments, console)
         elif suffix in LAYER_SUFFIXES:
-            figures = _write_layer(scratch, record, arguments, console)
+            figures = _write_layer(scratch, geo, arguments, console)
         else:
             from wavelet_gis.report.plots import plot_details
 
-            plot_details(scratch, record)
+            plot_details(scratch, geo)
             figures = {}
-    _tell(record, arguments, figures, console)
+    _tell(geo, arguments, figures, console)
 
 
 def _write_raster(
     path: str | os.PathLike[str],
-    record: PyramidRecord,
+    geo: GeoPyramid,
     arguments: argparse.Namespace,
     console: Console,
 ) -> dict[str, Any]:
@@ -95,28 +95,28 @@ def _write_raster(
         shape_columns,
     )
 
-    mesh = record.pyramid.mesh(_level(record, arguments))
+    mesh = geo.pyramid.mesh(_level(geo, arguments))
     with console.progress("spectrum") as progress:
         if arguments.what == "level":
-            levels = vertex_details(record.pyramid).level
+            levels = vertex_details(geo.pyramid).level
             name = "level at which a vertex went"
-            bands = label_band(record, mesh, levels, name, arguments.cell_size)
+            bands = label_band(geo, mesh, levels, name, arguments.cell_size)
         elif arguments.what == "shape":
             columns = shape_columns(mesh)
-            bands = value_bands(record, mesh, columns, SHAPE_NAMES, arguments.cell_size)
+            bands = value_bands(geo, mesh, columns, SHAPE_NAMES, arguments.cell_size)
         else:
             is_energy = arguments.what == "energy"
             columns_of = energy_columns if is_energy else component_columns
-            columns = columns_of(record, arguments.channel, progress)
-            names = band_names(record, "rms" if is_energy else "component")
-            bands = value_bands(record, mesh, columns, names, arguments.cell_size)
-    write_bands(path, bands, record.system.wkt)
+            columns = columns_of(geo, arguments.channel, progress)
+            names = band_names(geo, "rms" if is_energy else "component")
+            bands = value_bands(geo, mesh, columns, names, arguments.cell_size)
+    write_bands(path, bands, geo.system.wkt)
     return {"bands": list(bands.names), "shape": list(bands.geometry.shape)}
 
 
 def _write_layer(
     path: str | os.PathLike[str],
-    record: PyramidRecord,
+    geo: GeoPyramid,
     arguments: argparse.Namespace,
     console: Console,
 ) -> dict[str, Any]:
@@ -124,20 +124,20 @@ def _write_layer(
     from wavelet_gis.products.vertex_tables import shape_layer, vertex_layer
 
     if arguments.what == "shape":
-        layer = shape_layer(record, _level(record, arguments))
+        layer = shape_layer(geo, _level(geo, arguments))
     else:
         with console.progress("spectrum") as progress:
-            layer = vertex_layer(record, arguments.channel, progress)
-    add_layers(path, [layer], record.system)
+            layer = vertex_layer(geo, arguments.channel, progress)
+    add_layers(path, [layer], geo.system)
     return {"layer": layer.name, "n_points": len(layer.geometry)}
 
 
-def _level(record: PyramidRecord, arguments: argparse.Namespace) -> int:
-    return record.pyramid.n_levels if arguments.level is None else int(arguments.level)
+def _level(geo: GeoPyramid, arguments: argparse.Namespace) -> int:
+    return geo.pyramid.n_levels if arguments.level is None else int(arguments.level)
 
 
 def _tell(
-    record: PyramidRecord,
+    geo: GeoPyramid,
     arguments: argparse.Namespace,
     figures: dict[str, Any],
     console: Console,
@@ -146,10 +146,10 @@ def _tell(
 
     from wavelet_core.lifting.spacings import level_spacings
 
-    spacings = level_spacings(record.pyramid)[1:]
+    spacings = level_spacings(geo.pyramid)[1:]
     rows = []
-    for level, step in enumerate(record.pyramid.steps):
-        magnitude = np.linalg.norm(record.file_details(step.details), axis=1)
+    for level, step in enumerate(geo.pyramid.steps):
+        magnitude = np.linalg.norm(geo.file_details(step.details), axis=1)
         rms = float(np.sqrt((magnitude**2).mean())) if len(magnitude) else 0.0
         rows.append(
             (level, float(spacings[level]), step.n_odd, rms, float(magnitude.max(initial=0.0)))

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from wavelet_core import TriangleMesh
     from wavelet_core._validate import IntArray
     from wavelet_core.accuracy.between_levels import PartialMesh
-    from wavelet_gis.model.terrain_pyramid import PyramidRecord
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 HELP = (
     "Write one level of a pyramid, or the mesh of a size or an accuracy, as a TIN (GPKG, PLY, 2DM, "
@@ -102,13 +102,13 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_gis.io.pyramid_file import read_pyramid
 
     is_raster = is_raster_output(arguments, arguments.file)
-    record = read_pyramid(arguments.file)
-    mesh, vertex_ids, level = _wanted(record, arguments)
+    geo = read_pyramid(arguments.file)
+    mesh, vertex_ids, level = _wanted(geo, arguments)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if is_raster:
-            figures = write_raster(scratch, record, mesh, arguments)
+            figures = write_raster(scratch, geo, mesh, arguments)
         else:
-            write_tin(scratch, record, mesh, level, vertex_ids)
+            write_tin(scratch, geo, mesh, level, vertex_ids)
             figures = {}
     sizes = {
         "level": level,
@@ -124,14 +124,14 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     console.figures({"output": str(arguments.output), **sizes})
 
 
-def _wanted(record: PyramidRecord, arguments: argparse.Namespace) -> PartialMesh:
+def _wanted(geo: GeoPyramid, arguments: argparse.Namespace) -> PartialMesh:
     from wavelet_core.accuracy.between_levels import PartialMesh, mesh_of_accuracy, mesh_of_size
 
-    pyramid = record.pyramid
+    pyramid = geo.pyramid
     if arguments.vertices is not None:
         return mesh_of_size(pyramid, arguments.vertices)
     if arguments.max_error is not None:
-        return mesh_of_accuracy(pyramid, arguments.max_error * record.frame.z_scale)
+        return mesh_of_accuracy(pyramid, arguments.max_error * geo.frame.z_scale)
     mesh = pyramid.mesh(arguments.level)
     return PartialMesh(mesh, pyramid.vertex_ids(arguments.level), arguments.level)
 
@@ -146,7 +146,7 @@ def length(text: str) -> float:
 
 def write_tin(
     path: str | os.PathLike[str],
-    record: PyramidRecord,
+    geo: GeoPyramid,
     mesh: TriangleMesh,
     level: int,
     vertex_ids: IntArray | None = None,
@@ -160,15 +160,15 @@ def write_tin(
     from wavelet_gis.products.layers import tin_layers
 
     if Path(path).suffix.lower() == ".gpkg":
-        ids = record.pyramid.vertex_ids(level) if vertex_ids is None else vertex_ids
-        add_layers(path, tin_layers(record, mesh, ids, f"level_{level:02d}"), record.system)
+        ids = geo.pyramid.vertex_ids(level) if vertex_ids is None else vertex_ids
+        add_layers(path, tin_layers(geo, mesh, ids, f"level_{level:02d}"), geo.system)
     else:
-        write_mesh(path, record.file_mesh(mesh), record.system.wkt)
+        write_mesh(path, geo.file_mesh(mesh), geo.system.wkt)
 
 
 def write_raster(
     path: str | os.PathLike[str],
-    record: PyramidRecord,
+    geo: GeoPyramid,
     mesh: TriangleMesh,
     arguments: argparse.Namespace,
 ) -> dict[str, int]:
@@ -178,8 +178,8 @@ def write_raster(
     from wavelet_gis.io.raster import write_cog, write_dem
     from wavelet_gis.products.level_raster import surface_dem
 
-    dem = surface_dem(record, mesh, cell_size=arguments.cell_size, attribute=arguments.attribute)
-    (write_cog if arguments.cog else write_dem)(path, dem, record.system.wkt)
+    dem = surface_dem(geo, mesh, cell_size=arguments.cell_size, attribute=arguments.attribute)
+    (write_cog if arguments.cog else write_dem)(path, dem, geo.system.wkt)
     return {
         "n_rows": dem.geometry.shape[0],
         "n_columns": dem.geometry.shape[1],

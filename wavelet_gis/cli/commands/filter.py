@@ -11,7 +11,7 @@ from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
 
 if TYPE_CHECKING:
-    from wavelet_gis.model.terrain_pyramid import PyramidRecord
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 HELP = "Change chosen scales of a pyramid or take out noise; write a DEM, a LAS file or a pyramid."
 
@@ -95,12 +95,10 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     asks_scales = bool(arguments.gain or arguments.band or arguments.band_metres)
     if not asks_scales and not arguments.no_coarse and arguments.denoise is None:
         raise OptionError("nothing to change; give --gain, --band, --band-metres or --denoise.")
-    record = read_pyramid(arguments.file)
-    _check_suffix(arguments.output, record)
-    gains = chosen_gains(
-        record, arguments.gain, levels=arguments.band, metres=arguments.band_metres
-    )
-    changed = record
+    geo = read_pyramid(arguments.file)
+    _check_suffix(arguments.output, geo)
+    gains = chosen_gains(geo, arguments.gain, levels=arguments.band, metres=arguments.band_metres)
+    changed = geo
     figures: dict[str, Any] = {}
     if arguments.denoise is not None:
         with console.progress("denoising") as progress:
@@ -117,10 +115,10 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         figures["gains"] = gains
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         _write(scratch, arguments.output, changed, console)
-    for line in changed.history[len(record.history) :]:
+    for line in changed.history[len(geo.history) :]:
         console.say(line)
     console.say(str(arguments.output))
-    rms, largest = change_between(record, changed)
+    rms, largest = change_between(geo, changed)
     console.figures(
         {
             "output": str(arguments.output),
@@ -131,17 +129,15 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     )
 
 
-def _write(
-    scratch: str | os.PathLike[str], output: str, record: PyramidRecord, console: Console
-) -> None:
+def _write(scratch: str | os.PathLike[str], output: str, geo: GeoPyramid, console: Console) -> None:
     if Path(output).suffix.lower() == ".gpkg":
         from wavelet_gis.io.pyramid_file import write_pyramid
         from wavelet_gis.io.vector import add_layers
         from wavelet_gis.products.layers import coarse_layers, detail_layers
 
         with console.progress("writing") as progress:
-            write_pyramid(scratch, record, progress)
-        add_layers(scratch, [*coarse_layers(record), *detail_layers(record)], record.system)
+            write_pyramid(scratch, geo, progress)
+        add_layers(scratch, [*coarse_layers(geo), *detail_layers(geo)], geo.system)
         return
     from wavelet_core import TriangleMesh
     from wavelet_gis.cli.commands.extract import write_tin
@@ -149,16 +145,16 @@ def _write(
     from wavelet_gis.io.raster import write_dem
     from wavelet_gis.model.dem import Dem
 
-    changed = record.restore()
+    changed = geo.restore()
     if isinstance(changed, Dem):
-        write_dem(scratch, changed, record.system.wkt)
+        write_dem(scratch, changed, geo.system.wkt)
     elif isinstance(changed, TriangleMesh):
-        write_tin(scratch, record, record.pyramid.synthesise(), record.pyramid.n_levels)
+        write_tin(scratch, geo, geo.pyramid.synthesise(), geo.pyramid.n_levels)
     else:
         write_cloud(scratch, changed)
 
 
-def _check_suffix(output: str, record: PyramidRecord) -> None:
+def _check_suffix(output: str, geo: GeoPyramid) -> None:
     """Refuse an output of another kind than the input was, before the long work."""
     from wavelet_gis.errors import OutputFileError
     from wavelet_gis.io.meshes import MESH_SUFFIXES
@@ -174,7 +170,7 @@ def _check_suffix(output: str, record: PyramidRecord) -> None:
             suffix not in (*CLOUD_SUFFIXES, *MESH_SUFFIXES, ""),
             "a raster; give .tif",
         ),
-    }[record.source.kind]
+    }[geo.source.kind]
     if not fits:
         raise OutputFileError(
             f"{output}: the pyramid was made from {wanted} or, for a pyramid, .gpkg."

@@ -43,21 +43,21 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             "tin": "a TIN; give an output ending in .gpkg, .ply, .2dm or .obj",
         }.get(kind, "a raster; give an output ending in .tif")
         raise OutputFileError(f"{arguments.output}: the pyramid was made from {wanted}.")
-    record = read_pyramid(arguments.file)
-    original = record.restore()
+    geo = read_pyramid(arguments.file)
+    original = geo.restore()
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if isinstance(original, Dem):
-            write_dem(scratch, original, record.system.wkt)
+            write_dem(scratch, original, geo.system.wkt)
             size = f"{original.geometry.shape[0]} x {original.geometry.shape[1]} cells"
         elif isinstance(original, TriangleMesh):
-            write_tin(scratch, record, record.pyramid.synthesise(), record.pyramid.n_levels)
+            write_tin(scratch, geo, geo.pyramid.synthesise(), geo.pyramid.n_levels)
             size = f"{original.n_faces:,} triangles"
         else:
             from wavelet_gis.io.las import write_cloud
 
             write_cloud(scratch, original)
             size = f"{original.n_points:,} points"
-    is_exact = record.source.is_exact
+    is_exact = geo.source.is_exact
     verdict = "checksum verified, the original" if is_exact else "not the original, but altered"
     console.say(f"{size}, {verdict}; {arguments.output}")
     console.figures(

@@ -37,9 +37,9 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         suffixes=(".html", ".htm"),
         inputs=(arguments.file,),
     )
-    record = read_pyramid(arguments.file)
+    geo = read_pyramid(arguments.file)
     with console.progress("report") as progress:
-        page, figures = report_page(record, arguments.level, progress)
+        page, figures = report_page(geo, arguments.level, progress)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         scratch.write_text(page, encoding="utf-8")
     coarsest = figures["levels"][-1]

@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_core.accuracy.fitted_heights import fitted
     from wavelet_core.mesh.location import surface_errors
     from wavelet_gis.io.atomic import new_file
-    from wavelet_gis.model.terrain_pyramid import PyramidRecord
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
     is_raster = is_raster_output(arguments, arguments.input)
     began = perf_counter()
@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         mesh = fitted(mesh, terrain.mesh)
     errors = surface_errors(mesh, terrain.mesh.vertices) / unit
     covered = errors[np.isfinite(errors)]
-    record = PyramidRecord(
+    geo = GeoPyramid(
         pyramid=pyramid,
         system=terrain.system,
         frame=terrain.frame,
@@ -97,9 +97,9 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     )
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if is_raster:
-            write_raster(scratch, record, mesh, arguments)
+            write_raster(scratch, geo, mesh, arguments)
         else:
-            write_tin(scratch, record, mesh, 0)
+            write_tin(scratch, geo, mesh, 0)
     figures = {
         "output": str(arguments.output),
         "n_input_vertices": terrain.mesh.n_vertices,

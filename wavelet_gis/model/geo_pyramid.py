@@ -15,7 +15,7 @@ from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.cloud_origin import PointSource
 from wavelet_gis.model.dem import Dem, RasterSource
 
-__all__ = ["MeshSource", "PyramidRecord", "Source"]
+__all__ = ["GeoPyramid", "MeshSource", "Source"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ Source = RasterSource | PointSource | MeshSource
 
 
 @dataclass(frozen=True, slots=True)
-class PyramidRecord:
+class GeoPyramid:
     """What a pyramid file holds.
 
     Attributes
@@ -66,8 +66,8 @@ class PyramidRecord:
     errors: tuple[LevelErrors, ...] | None = None
     history: tuple[str, ...] = ()
 
-    def with_errors(self, progress: Callable[[float], bool | None] | None = None) -> PyramidRecord:
-        """Return the record with the errors of every level computed.
+    def with_errors(self, progress: Callable[[float], bool | None] | None = None) -> GeoPyramid:
+        """Return the pyramid with the errors of every level computed.
 
         Parameters
         ----------
@@ -84,8 +84,8 @@ class PyramidRecord:
         )
         return replace(self, errors=tuple(levels))
 
-    def with_pyramid(self, pyramid: Pyramid, change: str) -> PyramidRecord:
-        """Return the record of an altered pyramid, which no longer gives the exact input.
+    def with_pyramid(self, pyramid: Pyramid, change: str) -> GeoPyramid:
+        """Return the pyramid of an altered pyramid, which no longer gives the exact input.
 
         Parameters
         ----------
