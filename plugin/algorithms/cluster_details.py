@@ -225,9 +225,10 @@ class ClusterDetails(PyramidAlgorithm):
         path = self.parameterAsFileOutput(parameters, "SUMMARY", context)
         if path:
             from wavelet_gis.io.atomic import new_file
+            from wavelet_gis.io.read_back import write_text
 
             with new_file(path, overwrite=True) as scratch:
-                scratch.write_text(json.dumps(summary, indent=1), encoding="utf-8")
+                write_text(scratch, json.dumps(summary, indent=1))
             results["SUMMARY"] = path
         return results
 

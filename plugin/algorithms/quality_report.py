@@ -86,6 +86,7 @@ class QualityReport(PyramidAlgorithm):
     def work(self, parameters, context, feedback):
         """Measure, draw, write."""
         from wavelet_gis.io.atomic import new_file
+        from wavelet_gis.io.read_back import write_text
         from wavelet_gis.report.page import report_page
 
         from ..parameters.pyramid import figures
@@ -104,7 +105,7 @@ class QualityReport(PyramidAlgorithm):
             if not path:
                 continue
             with new_file(path, overwrite=True) as scratch:
-                scratch.write_text(text, encoding="utf-8")
+                write_text(scratch, text)
             results[name] = path
         if "OUTPUT" not in results:
             raise QgsProcessingException(self.tr("Choose a file for the report."))

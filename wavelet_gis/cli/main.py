@@ -8,6 +8,7 @@ it runs, so that ``--help`` comes at once.
 from __future__ import annotations
 
 import argparse
+import errno
 import importlib
 import logging
 import os
@@ -27,6 +28,9 @@ from wavelet_gis.cli.console import Console
 __all__ = ["main"]
 
 REFUSED, INTERRUPTED, TERMINATED = 1, 130, 143
+
+#: What a system says when a file does not fit; Windows knows no quota.
+_NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 #: Set to see where an unforeseen error came from.
 DEBUG_VARIABLE = "TERRAIN_WAVELETS_DEBUG"
@@ -101,13 +105,26 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
         if isinstance(error, WaveletError):
             _complain(str(error))
         elif isinstance(error, OSError | sqlite3.Error):
-            _complain(f"the operating system refused: {error}; is the disk full?")
+            _complain(f"the operating system refused: {error}{_remedy(error)}")
         else:
             _complain(
                 f"an unforeseen error, {type(error).__name__}: {error}; please report it, with "
                 f"what {DEBUG_VARIABLE}=1 prints"
             )
     return REFUSED
+
+
+def _remedy(error: OSError | sqlite3.Error) -> str:
+    """Return what to look at, by the number of the error; empty where only the text tells."""
+    if isinstance(error, sqlite3.Error):
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+        is_full, is_held = code == sqlite3.SQLITE_FULL, code == sqlite3.SQLITE_BUSY
+    else:
+        is_full = error.errno in _NO_ROOM
+        is_held = False
+    if is_full:
+        return "; is the disk full?"
+    return "; close the other program that has the file open" if is_held else ""
 
 
 class _Terminated(BaseException):

@@ -9,15 +9,16 @@ from __future__ import annotations
 import os
 import sqlite3
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from urllib.parse import quote
 
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, OutputFileError
 
 __all__ = [
     "LayerStyle",
+    "check_tables",
     "create_geopackage",
     "open_for_writing",
     "open_stranger",
@@ -91,7 +92,7 @@ def open_for_writing(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connectio
 
     There is no journal: a file that fails half-way is a scratch file and is thrown away.
     """
-    connection = sqlite3.connect(os.fspath(path))
+    connection = sqlite3.connect(os.path.abspath(path))  # ":memory:" is a file's name here
     try:
         connection.execute("PRAGMA journal_mode = OFF")
         connection.execute("PRAGMA synchronous = OFF")
@@ -131,6 +132,25 @@ def open_stranger(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
         ) from error
     finally:
         connection.close()
+
+
+def check_tables(path: str | os.PathLike[str], n_rows: Mapping[str, int]) -> None:
+    """Read a GeoPackage back: SQLite's own check, and the number of rows of tables.
+
+    Raises
+    ------
+    InputFileError, OutputFileError
+        With what is wrong.
+    """
+    with open_stranger(path) as connection:
+        verdict = str(connection.execute("PRAGMA quick_check(1)").fetchone()[0])
+        if verdict != "ok":
+            raise OutputFileError(f"SQLite finds {verdict}")
+        for table, n in n_rows.items():
+            quoted = '"' + table.replace('"', '""') + '"'
+            (there,) = connection.execute(f"SELECT COUNT(*) FROM {quoted}").fetchone()  # nosec B608
+            if there != n:
+                raise OutputFileError(f"table {table} holds {there} rows of {n}")
 
 
 def table_names(connection: sqlite3.Connection) -> set[str]:

@@ -6,6 +6,7 @@ import io
 import os
 import warnings
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.crs.las import las_crs
 from wavelet_gis.errors import InputFileError, OutputFileError, PointCloudWarning
+from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 from wavelet_gis.model.ground import GROUND_CLASS, height_above_ground
 
@@ -172,10 +174,33 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
             if not any(stored_date):  # laspy writes today where there was no date
                 stream.seek(_CREATION_DATE.start)
                 stream.write(stored_date)
-    except (laspy.LaspyException, ValueError, KeyError) as error:
+    except (laspy.LaspyException, ValueError, KeyError, *_errors_of_codec()) as error:
         raise OutputFileError(
             f"{path}: the points cannot be written as LAS {header.version} ({error})."
         ) from error
+    read_back(path, partial(_check_points, record.array))
+
+
+def _errors_of_codec() -> tuple[type[Exception], ...]:
+    try:
+        from lazrs import LazrsError
+    except ImportError:
+        return ()
+    return (LazrsError,)
+
+
+def _check_points(due: NDArray[Any], path: str | os.PathLike[str]) -> None:
+    """Read a cloud back: every byte of every record."""
+    with _laspy().open(os.fspath(path)) as reader:
+        if reader.header.point_count != len(due):
+            raise OutputFileError(f"it holds {reader.header.point_count} points of {len(due)}")
+        start = 0
+        for points in reader.chunk_iterator(1 << 20):
+            if points.array.tobytes() != due[start : start + len(points)].tobytes():
+                raise OutputFileError(f"its points differ from number {start} on")
+            start += len(points)
+        if start != len(due):
+            raise OutputFileError(f"{start} points can be read of {len(due)}")
 
 
 def _laspy() -> Any:

@@ -19,6 +19,7 @@ import sqlite3
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 from numpy.typing import NDArray
@@ -31,12 +32,14 @@ from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.array_codec import ArrayHeader, decode_array, encode_array, header_of
 from wavelet_gis.io.geopackage import (
+    check_tables,
     create_geopackage,
     open_for_writing,
     open_stranger,
     register_attributes_table,
     table_names,
 )
+from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.cloud_origin import PointSource
 from wavelet_gis.model.dem import RasterSource
 from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource, Source
@@ -119,6 +122,8 @@ def write_pyramid(
             done += array.nbytes
             if progress is not None and progress(done / total) is False:
                 raise Cancelled("writing the pyramid was cancelled; nothing was kept.")
+    n_rows = {"wavelet_metadata": len(metadata), "wavelet_arrays": len(arrays)}
+    read_back(path, partial(check_tables, n_rows=n_rows))
 
 
 def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:

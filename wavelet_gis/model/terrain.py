@@ -6,11 +6,17 @@ import warnings
 from dataclasses import dataclass
 
 from wavelet_core import MeshError, Pyramid, TriangleMesh
-from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
+from wavelet_gis.crs.frame import (
+    CoordinateSystem,
+    LocalFrame,
+    assumed_vertical_unit,
+    vertical_unit_name,
+    working_frame,
+)
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
 from wavelet_gis.model.cloud import PointCloud, cloud_bounds
 from wavelet_gis.model.cloud_origin import PointSource, cloud_mesh
-from wavelet_gis.model.dem import Dem, RasterSource, dem_mesh, grid_bounds
+from wavelet_gis.model.dem import Dem, RasterSource, dem_mesh, grid_bounds, require_sound
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = [
@@ -84,6 +90,7 @@ def terrain_of_dem(
     vertical_unit : str, optional
         Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
     """
+    require_sound(dem, name)
     if not dem.valid.any():
         raise InputFileError(
             f"{name}: every cell of the raster is nodata, so there is no terrain in it; check the "
@@ -180,11 +187,16 @@ def frame_of_bounds(
             "taken as they are (give another with --crs)"
         )
     unit = vertical_unit or system.vertical_unit
-    if unit is None:
-        unit = "metre" if system.kind == "geographic" else "unit of x and y"
-    else:
-        unit = vertical_unit_name(unit)
-    if frame.z_scale != 1.0 and abs(frame.z_scale - 1.0) > 1e-5:
+    is_assumed = unit is None
+    unit = assumed_vertical_unit(system) if unit is None else vertical_unit_name(unit)
+    if is_assumed and system.kind == "projected" and frame.z_scale != 1.0:
+        warnings.warn(
+            f"{name}: x and y are in units of {system.horizontal_unit:g} m and nothing tells the "
+            "unit of z; it is taken for the metre (--vertical-unit names another)",
+            UnitWarning,
+            stacklevel=3,
+        )
+    elif frame.z_scale != 1.0 and abs(frame.z_scale - 1.0) > 1e-5:
         warnings.warn(
             f"{name}: z is in {unit.replace('_', ' ')} and is converted to the unit of the "
             "horizontal plane while working; results are in the file's units",

@@ -6,9 +6,12 @@ import numpy as np
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
-from wavelet_gis.model.dem import Dem, GridGeometry, RasterSource
+from wavelet_gis.model.dem import Dem, RasterSource
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.products.rasterise import geometry_over, rasterise
+from wavelet_gis.model.nodata import tag_without_clash
+from wavelet_gis.products.lone_vertices import fill_lone_cells
+from wavelet_gis.products.rasterise import rasterise
+from wavelet_gis.products.vertex_raster import grid_of
 
 __all__ = ["surface_dem", "surface_difference"]
 
@@ -30,15 +33,17 @@ def surface_dem(
         In the working frame.
     cell_size : float, optional
         Of a grid over the mesh, in the input's unit of x and y. By default the grid of the raster
-        that the pyramid was made from; without one, the mean spacing of the mesh's vertices.
+        that the pyramid was made from; without one, the mean spacing of the mesh's vertices. See
+        `wavelet_gis.products.vertex_raster.grid_of`.
     attribute : str, optional
         What to evaluate instead of the elevation.
 
     Returns
     -------
     Dem
-        Of 64-bit floats where the input was such a raster, else of 32-bit ones; cells that no face
-        covers hold the input's nodata value, or NaN.
+        Of 64-bit floats where the input was such a raster, else of 32-bit ones. A cell that no face
+        covers has the height of a vertex without faces in it; the others hold the input's nodata
+        value, or NaN where that would be an elevation.
 
     Raises
     ------
@@ -48,18 +53,15 @@ def surface_dem(
     in_file = geo.file_mesh(mesh)
     values = _attribute_values(in_file, attribute) if attribute else None
     source = geo.source if isinstance(geo.source, RasterSource) else None
-    if source is not None and not cell_size:
-        geometry = source.geometry
-    else:
-        geometry = _geometry(in_file, cell_size)
-    grid = rasterise(in_file, geometry, values)
+    geometry = grid_of(geo, mesh, cell_size)
+    grid = fill_lone_cells(rasterise(in_file, geometry, values), in_file, geometry, values)
     if source is None or source.dtype != np.float64:
         grid = grid.astype(np.float32)
     covered = np.isfinite(grid)
-    tag = float("nan")
-    if source is not None and source.nodata is not None:
-        largest = float(np.finfo(grid.dtype).max)
-        tag = float(source.nodata) if abs(float(source.nodata)) <= largest else tag
+    # The input's tag stands for its stored numbers, which are no elevations where it has a scale.
+    is_scaled = source is not None and (source.scale, source.offset) != (1.0, 0.0)
+    wished = None if source is None or is_scaled else source.nodata
+    tag = tag_without_clash(grid, covered, wished)
     grid[~covered] = tag
     profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
     return Dem(grid, covered, geometry, tag, profile=profile)
@@ -77,13 +79,6 @@ def surface_difference(before: GeoPyramid, after: GeoPyramid) -> Dem:
     valid = old.valid & new.valid
     values = np.where(valid, new.values - old.values, np.float32("nan")).astype(np.float32)
     return Dem(values, valid, old.geometry, float("nan"), profile=old.profile)
-
-
-def _geometry(mesh: TriangleMesh, cell_size: float | None) -> GridGeometry:
-    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    area = (high[0] - low[0]) * (high[1] - low[1])
-    size = cell_size or float(np.sqrt(area / mesh.n_vertices))
-    return geometry_over((low[0], low[1], high[0], high[1]), size)
 
 
 def _attribute_values(mesh: TriangleMesh, attribute: str) -> np.ndarray:

@@ -7,8 +7,9 @@ import tempfile
 
 import pytest
 
-from wavelet_gis.errors import OutputFileError
+from wavelet_gis.errors import CrsWarning, OutputFileError
 from wavelet_gis.io.atomic import check_output, new_file
+from wavelet_gis.io.read_back import write_text
 
 
 def names_in(folder):
@@ -23,15 +24,15 @@ def fail_half_way(path, error, **options):
 
 def finish(path, text, companion=None, meanwhile=lambda: None, **options):
     with new_file(path, **options) as scratch:
-        scratch.write_text(text)
+        write_text(scratch, text)
         if companion:
-            scratch.with_name(companion).write_text(text)
+            scratch.with_name(scratch.stem + companion).write_text(text)
         meanwhile()
 
 
 def test_the_file_and_its_companions_appear_at_the_end(tmp_path):
     seen = []
-    finish(tmp_path / "a.2dm", "mesh", "a.prj", lambda: seen.extend(names_in(tmp_path)))
+    finish(tmp_path / "a.2dm", "mesh", ".prj", lambda: seen.extend(names_in(tmp_path)))
     assert "a.2dm" not in seen
     assert names_in(tmp_path) == ["a.2dm", "a.prj"]
 
@@ -71,9 +72,9 @@ def test_what_appears_meanwhile_is_kept(tmp_path):
 
 def test_a_companion_of_something_else_is_kept(tmp_path):
     (tmp_path / "a.prj").write_text("theirs")
-    with pytest.raises(OutputFileError, match=r"a\.prj"):
-        finish(tmp_path / "a.2dm", "ours", "a.prj")
-    assert names_in(tmp_path) == ["a.prj"]
+    with pytest.warns(CrsWarning, match=r"a\.prj belongs to another file"):
+        finish(tmp_path / "a.2dm", "ours", ".prj")
+    assert (tmp_path / "a.2dm").read_text() == "ours"
     assert (tmp_path / "a.prj").read_text() == "theirs"
 
 
@@ -103,7 +104,7 @@ def test_a_folder_without_permission():
     code = (
         "import os, sys\n"
         "from wavelet_gis.io.atomic import check_output\n"
-        "from wavelet_gis.errors import OutputFileError\n"
+        "from wavelet_gis.errors import CrsWarning, OutputFileError\n"
         "if os.geteuid() == 0: os.setuid(65534)\n"
         "try: check_output(sys.argv[1])\n"
         "except OutputFileError as error: print(error)\n"

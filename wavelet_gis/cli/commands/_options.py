@@ -22,6 +22,18 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("input")
     group.add_argument("--band", type=int, metavar="N", help="band of a raster, from 1")
     group.add_argument(
+        "--nodata",
+        type=_nodata,
+        metavar="VALUE",
+        help="number that stands for nothing in a raster, as stored (before scale and offset), "
+        "instead of the file's; 'none' for none",
+    )
+    group.add_argument(
+        "--offline",
+        action="store_true",
+        help="refuse a raster that reads from the network, as a VRT may",
+    )
+    group.add_argument(
         "--attributes",
         type=_names,
         default=(),
@@ -42,7 +54,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "--vertical-unit",
         metavar="UNIT",
         help="of z: metre, foot or us_survey_foot; by default what the CRS says, else metre for "
-        "a geographic CRS and the unit of x and y for any other",
+        "degrees and kilometres and the unit of x and y for any other",
     )
 
 
@@ -58,6 +70,8 @@ def open_input(arguments: argparse.Namespace) -> Terrain:
         carry=not arguments.drop_other_dimensions,
         crs=arguments.crs,
         vertical_unit=arguments.vertical_unit,
+        nodata=arguments.nodata,
+        offline=arguments.offline,
     )
 
 
@@ -121,6 +135,15 @@ def analysis_options(arguments: argparse.Namespace) -> dict[str, Any]:
 def add_overwrite_argument(parser: argparse.ArgumentParser) -> None:
     """Add the leave to replace an output that exists."""
     parser.add_argument("--overwrite", action="store_true", help="replace an output that exists")
+
+
+def _nodata(text: str) -> float | str:
+    if text.lower() == "none":
+        return "none"
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no number, nor 'none'") from None
 
 
 def _names(text: str) -> tuple[str, ...]:

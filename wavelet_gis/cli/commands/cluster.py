@@ -177,9 +177,10 @@ def _write(
     confidence: NDArray[np.float64],
     arguments: argparse.Namespace,
 ) -> None:
+    from wavelet_gis.io.raster import write_bands
     from wavelet_gis.io.vector import add_layers
     from wavelet_gis.products.label_layer import label_layer
-    from wavelet_gis.products.vertex_raster import label_band, write_bands
+    from wavelet_gis.products.vertex_raster import label_band
 
     name = "cluster" if arguments.learn is None else "class"
     suffix = Path(path).suffix.lower()

@@ -87,7 +87,8 @@ def _write_raster(
 ) -> dict[str, Any]:
     from wavelet_core.features.shape import SHAPE_NAMES
     from wavelet_core.features.spectrum import vertex_details
-    from wavelet_gis.products.vertex_raster import label_band, value_bands, write_bands
+    from wavelet_gis.io.raster import write_bands
+    from wavelet_gis.products.vertex_raster import label_band, value_bands
     from wavelet_gis.products.vertex_tables import (
         band_names,
         component_columns,

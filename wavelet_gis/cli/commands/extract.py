@@ -58,6 +58,12 @@ def add_raster_arguments(parser: argparse.ArgumentParser) -> None:
         "mean spacing at this level",
     )
     raster.add_argument("--attribute", metavar="NAME", help="an attribute instead of the elevation")
+    parser.add_argument(
+        "--to-crs",
+        metavar="CRS",
+        help="of a mesh file: a projected CRS, or auto for the UTM zone, which is the default for "
+        "an input in degrees",
+    )
     raster.add_argument("--cog", action="store_true", help="write a cloud-optimised GeoTIFF")
 
 
@@ -93,6 +99,8 @@ def is_raster_output(arguments: argparse.Namespace, source: str) -> bool:
         raise OptionError(
             "--cell-size, --attribute and --cog are for rasters; give an output ending in .tif."
         )
+    if arguments.to_crs and Path(arguments.output).suffix.lower() not in MESH_SUFFIXES:
+        raise OptionError("--to-crs is for mesh files; give an output such as .ply, or leave it.")
     return is_raster
 
 
@@ -104,11 +112,12 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     is_raster = is_raster_output(arguments, arguments.file)
     geo = read_pyramid(arguments.file)
     mesh, vertex_ids, level = _wanted(geo, arguments)
+    note = ""
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if is_raster:
             figures = write_raster(scratch, geo, mesh, arguments)
         else:
-            write_tin(scratch, geo, mesh, level, vertex_ids)
+            note = write_tin(scratch, geo, mesh, level, vertex_ids, arguments.to_crs)
             figures = {}
     sizes = {
         "level": level,
@@ -116,6 +125,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         "n_triangles": mesh.n_faces,
         **figures,
     }
+    if note:
+        console.say(f"{arguments.output}: {note}")
     shape = f", {figures['n_rows']} x {figures['n_columns']} cells" if figures else ""
     console.say(
         f"level {level}: {mesh.n_vertices:,} vertices, {mesh.n_faces:,} triangles"
@@ -150,20 +161,26 @@ def write_tin(
     mesh: TriangleMesh,
     level: int,
     vertex_ids: IntArray | None = None,
-) -> None:
+    to_crs: str | None = None,
+) -> str:
     """Write a mesh of the pyramid as GeoPackage layers or as a mesh file, by the suffix.
 
-    ``vertex_ids`` are needed where the mesh is between two levels.
+    ``vertex_ids`` are needed where the mesh is between two levels. Returns what a mesh file has
+    other than the input: another CRS, another unit of z.
     """
     from wavelet_gis.io.meshes import write_mesh
     from wavelet_gis.io.vector import add_layers
     from wavelet_gis.products.layers import tin_layers
+    from wavelet_gis.products.plane_mesh import plane_mesh
 
     if Path(path).suffix.lower() == ".gpkg":
         ids = geo.pyramid.vertex_ids(level) if vertex_ids is None else vertex_ids
         add_layers(path, tin_layers(geo, mesh, ids, f"level_{level:02d}"), geo.system)
     else:
-        write_mesh(path, geo.file_mesh(mesh), geo.system.wkt)
+        placed = plane_mesh(geo, mesh, to_crs)
+        write_mesh(path, placed.mesh, placed.system.wkt)
+        return placed.note
+    return ""
 
 
 def write_raster(

@@ -149,7 +149,9 @@ def _write(scratch: str | os.PathLike[str], output: str, geo: GeoPyramid, consol
     if isinstance(changed, Dem):
         write_dem(scratch, changed, geo.system.wkt)
     elif isinstance(changed, TriangleMesh):
-        write_tin(scratch, geo, geo.pyramid.synthesise(), geo.pyramid.n_levels)
+        note = write_tin(scratch, geo, geo.pyramid.synthesise(), geo.pyramid.n_levels)
+        if note:
+            console.say(f"{output}: {note}")
     else:
         write_cloud(scratch, changed)
 

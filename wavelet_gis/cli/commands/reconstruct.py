@@ -50,7 +50,9 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             write_dem(scratch, original, geo.system.wkt)
             size = f"{original.geometry.shape[0]} x {original.geometry.shape[1]} cells"
         elif isinstance(original, TriangleMesh):
-            write_tin(scratch, geo, geo.pyramid.synthesise(), geo.pyramid.n_levels)
+            note = write_tin(scratch, geo, geo.pyramid.synthesise(), geo.pyramid.n_levels)
+            if note:
+                console.say(f"{arguments.output}: {note}")
             size = f"{original.n_faces:,} triangles"
         else:
             from wavelet_gis.io.las import write_cloud

@@ -95,11 +95,12 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         source=terrain.source,
         source_name=terrain.name,
     )
+    note = ""
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if is_raster:
             write_raster(scratch, geo, mesh, arguments)
         else:
-            write_tin(scratch, geo, mesh, 0)
+            note = write_tin(scratch, geo, mesh, 0, to_crs=arguments.to_crs)
     figures = {
         "output": str(arguments.output),
         "n_input_vertices": terrain.mesh.n_vertices,
@@ -110,6 +111,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         "n_levels": pyramid.n_levels,
         "seconds": round(perf_counter() - began, 3),
     }
+    if note:
+        console.say(f"{arguments.output}: {note}")
     console.say(
         f"{figures['n_vertices']:,} of {figures['n_input_vertices']:,} vertices, "
         f"{figures['n_triangles']:,} triangles; RMSE {figures['rmse']:.4g}, largest error "
