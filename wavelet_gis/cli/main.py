@@ -24,6 +24,7 @@ from typing import Any
 from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
 from wavelet_gis.cli import commands
 from wavelet_gis.cli.console import Console
+from wavelet_gis.cli.streams import make_standard_streams_usable
 
 __all__ = ["main"]
 
@@ -62,6 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 done, 1 refused with one line on standard error, 2 usage, 130 interrupted.
     """
+    make_standard_streams_usable()
     try:
         chosen = _parser().parse_args(arguments)
     except SystemExit as stop:  # argparse has said why

@@ -15,6 +15,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from wavelet_gis.errors import InputFileError, OutputFileError
+from wavelet_gis.io.names import MAX_DATABASE_NAME
 
 __all__ = [
     "LayerStyle",
@@ -116,7 +117,12 @@ def open_stranger(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
         raise InputFileError(f"{name}: this is a folder; name the pyramid file in it.")
     if not os.path.exists(name):
         raise InputFileError(f"{name}: there is no such file; check the path.")
-    uri = "file:" + quote(str(Path(name).absolute())) + "?mode=ro"
+    if len(os.fsencode(os.path.abspath(name))) > MAX_DATABASE_NAME:
+        raise InputFileError(
+            f"{os.path.basename(name)}: SQLite opens no file by a path of more than "
+            f"{MAX_DATABASE_NAME} bytes; move it to a folder nearer to the root."
+        )
+    uri = "file:" + quote(os.fsencode(Path(name).absolute())) + "?mode=ro"
     connection = sqlite3.connect(uri, uri=True)
     try:
         # Views, triggers and functions in the schema of a stranger must not run.

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from wavelet_gis.errors import InputFileError, OutputFileError
 
-__all__ = ["MAX_DATABASE_NAME", "file_of", "gdal_path", "is_utf8", "plain_folder"]
+__all__ = ["MAX_DATABASE_NAME", "file_of", "gdal_path", "is_utf8", "plain_folder", "readable"]
 
 #: Longest path, in bytes, that SQLite opens with room for its ``-journal``; its own limit is 512.
 MAX_DATABASE_NAME = 500
@@ -82,6 +82,11 @@ def is_utf8(name: str | os.PathLike[str]) -> bool:
     except UnicodeError:
         return False
     return True
+
+
+def readable(name: str | os.PathLike[str]) -> str:
+    """Return a file's name as text that can be written to any file in UTF-8."""
+    return os.fsencode(name).decode("utf-8", "backslashreplace")
 
 
 @contextmanager

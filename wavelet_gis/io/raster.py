@@ -101,11 +101,17 @@ def read_dem(
         _warn(f"{path}: reads {remote} over the network (--offline forbids it)")
     try:
         # A raster without georeference is told of by our own warning, once.
-        with warnings.catch_warnings(), rasterio.Env(**(NO_NETWORK if offline else {})):
+        settings = NO_NETWORK if offline else {}
+        with warnings.catch_warnings(), _silent_libraries(), rasterio.Env(**settings):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(gdal_path(path)) as dataset:
                 dem, place = _read_band(dataset, path, band, nodata)
     except (RasterioError, CPLE_BaseError) as error:
+        if remote is not None:
+            raise InputFileError(
+                f"{path}: {remote}, which this raster reads over the network, cannot be had; fetch "
+                "it first and name the local file."
+            ) from error
         raise InputFileError(f"{path}: {_reason(error, path)}") from error
     require_sound(dem, os.fspath(path))
     _tell_of_doubts(dem, path)

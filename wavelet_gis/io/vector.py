@@ -88,8 +88,10 @@ def _write_layer(path: str | os.PathLike[str], layer: Layer, crs: str | None) ->
                 dataset_options={} if os.path.exists(path) else {"VERSION": "1.2"},
             )
         except (DataSourceError, DataLayerError, FeatureError) as error:
+            # GDAL quotes whole schemas before it comes to the point.
+            reason = str(error).rsplit("failed: ", 1)[-1]
             raise OutputFileError(
-                f"layer {layer.name} cannot be written ({error}); "
+                f"layer {layer.name} cannot be written ({reason}); "
                 f"{room_at(os.path.dirname(os.path.realpath(path)))}."
             ) from error
 

@@ -8,7 +8,14 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_gis.model.dem import GridGeometry
 
-__all__ = ["fill_lone_cells"]
+__all__ = ["fill_lone_cells", "lone_vertices"]
+
+
+def lone_vertices(mesh: TriangleMesh) -> NDArray[np.int64]:
+    """Return the vertices that no face uses."""
+    is_lone = np.ones(mesh.n_vertices, dtype=bool)
+    is_lone[mesh.faces.reshape(-1)] = False
+    return np.flatnonzero(is_lone)
 
 
 def fill_lone_cells(
@@ -38,9 +45,7 @@ def fill_lone_cells(
     ndarray of float64
         The grid.
     """
-    is_lone = np.ones(mesh.n_vertices, dtype=bool)
-    is_lone[mesh.faces.reshape(-1)] = False
-    lone = np.flatnonzero(is_lone)
+    lone = lone_vertices(mesh)
     if not len(lone):
         return grid
     columns, rows = geometry.cells(mesh.vertices[lone, 0], mesh.vertices[lone, 1])

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from wavelet_gis.crs.frame import MAX_DISTORTION, vertical_unit_name
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError
+from wavelet_gis.io.names import readable
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem
 
 __all__ = ["CLOUD_SUFFIXES", "open_terrain"]
@@ -74,7 +75,7 @@ def open_terrain(
         cloud, place = read_cloud(path, attributes=attributes, classes=classes, carry=carry)
         system = override or coordinate_system(place.wkt)
         terrain = terrain_of_cloud(
-            os.fspath(path), cloud, system, vertical_unit or place.vertical_unit, fault=place.fault
+            readable(path), cloud, system, vertical_unit or place.vertical_unit, fault=place.fault
         )
         _tell_of_scale(terrain)
         return terrain
@@ -87,7 +88,7 @@ def open_terrain(
     dem, place = read_dem(path, band=band, nodata=nodata, offline=offline)
     system = override or coordinate_system(place.wkt)
     unit = vertical_unit or _known_unit(place.vertical_unit)
-    terrain = terrain_of_dem(os.fspath(path), dem, system, unit)
+    terrain = terrain_of_dem(readable(path), dem, system, unit)
     _tell_of_scale(terrain)
     return terrain
 

@@ -66,6 +66,11 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         raise OptionError("--level is for --what shape; leave it out, or ask for the shape.")
     suffix = Path(arguments.output).suffix.lower()
     geo = read_pyramid(arguments.file)
+    if geo.pyramid.n_levels == 0 and arguments.what not in ("shape", "level"):
+        raise OptionError(
+            f"{arguments.file}: the pyramid has no levels and so no details; analyse the input "
+            "with more levels (a surface of a few points has none to give)."
+        )
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         if suffix in RASTER_SUFFIXES:
             figures = _write_raster(scratch, geo, arguments, console)

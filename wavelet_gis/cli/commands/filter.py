@@ -96,6 +96,11 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     if not asks_scales and not arguments.no_coarse and arguments.denoise is None:
         raise OptionError("nothing to change; give --gain, --band, --band-metres or --denoise.")
     geo = read_pyramid(arguments.file)
+    if geo.pyramid.n_levels == 0:
+        raise OptionError(
+            f"{arguments.file}: the pyramid has no levels and so no details to change; analyse "
+            "the input with more levels (a surface of a few points has none to give)."
+        )
     _check_suffix(arguments.output, geo)
     gains = chosen_gains(geo, arguments.gain, levels=arguments.band, metres=arguments.band_metres)
     changed = geo

@@ -67,6 +67,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_core.mesh.location import surface_errors
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.model.geo_pyramid import GeoPyramid
+    from wavelet_gis.products.lone_vertices import lone_vertices
 
     is_raster = is_raster_output(arguments, arguments.input)
     began = perf_counter()
@@ -86,6 +87,10 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     if not arguments.no_fit and pyramid.parameters["norm"] == "rms":
         mesh = fitted(mesh, terrain.mesh)
     errors = surface_errors(mesh, terrain.mesh.vertices) / unit
+    # Vertices without a triangle are kept, and their heights with them.
+    lone = lone_vertices(mesh)
+    of_input = pyramid.vertex_ids(0)[lone]
+    errors[of_input] = (mesh.vertices[lone, 2] - terrain.mesh.vertices[of_input, 2]) / unit
     covered = errors[np.isfinite(errors)]
     geo = GeoPyramid(
         pyramid=pyramid,
