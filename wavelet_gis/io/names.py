@@ -93,7 +93,8 @@ def readable(name: str | os.PathLike[str]) -> str:
 def plain_folder(path: str | os.PathLike[str]) -> Iterator[str]:
     """Yield another name of a file, by way of a link, where pyogrio would misread its own.
 
-    pyogrio takes ``!`` and ``;`` in a path for the syntax of archives and cuts it there.
+    pyogrio takes ``!`` and ``;`` in a path for the syntax of archives and cuts it there, and asks
+    Python for files by names that a plain locale cannot encode.
 
     Raises
     ------
@@ -103,13 +104,13 @@ def plain_folder(path: str | os.PathLike[str]) -> Iterator[str]:
     from pyogrio.util import vsi_path
 
     name = str(gdal_path(path))
-    if vsi_path(name) == name:
+    if vsi_path(name) == name and _is_known_to_the_system(name):
         yield name
         return
     with tempfile.TemporaryDirectory() as folder:
         link = Path(folder) / "folder"
         try:
-            link.symlink_to(os.path.dirname(name), target_is_directory=True)
+            link.symlink_to(os.path.dirname(os.path.abspath(path)), target_is_directory=True)
         except OSError as error:
             raise OutputFileError(
                 f"{path}: layers cannot be written to a folder of this name ({error.strerror}); "
@@ -121,3 +122,11 @@ def plain_folder(path: str | os.PathLike[str]) -> Iterator[str]:
                 f"{path}: layers cannot be written to a file of this name; leave out ! and ;."
             )
         yield alias
+
+
+def _is_known_to_the_system(name: str) -> bool:
+    try:
+        os.fsencode(name)
+    except UnicodeError:
+        return False
+    return True

@@ -40,7 +40,7 @@ def run(*arguments):
 
 @pytest.mark.skipif(os.name != "posix", reason="Windows forbids many of these names")
 @settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=8, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(folder=NAMES, name=NAMES)
 @example(folder="!old work", name="x!y")
