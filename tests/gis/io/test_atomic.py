@@ -126,23 +126,26 @@ def test_a_writer_that_cannot_be_checked_is_told_of(tmp_path):
 @pytest.mark.parametrize("damage", [lambda b: b[:-1], lambda b: b"", lambda b: b[:-1] + b"?"])
 def test_what_does_not_read_back_replaces_nothing(tmp_path, damage):
     (tmp_path / "a.txt").write_text("old")
-    with (
-        pytest.raises(OutputFileError, match="does not read back"),
-        new_file(tmp_path / "a.txt", overwrite=True) as scratch,
-    ):
-        write_text(scratch, "new and whole")
-        scratch.write_bytes(damage(scratch.read_bytes()))
+
+    def write():
+        with new_file(tmp_path / "a.txt", overwrite=True) as scratch:
+            write_text(scratch, "new and whole")
+            scratch.write_bytes(damage(scratch.read_bytes()))
+
+    with pytest.raises(OutputFileError, match="does not read back"):
+        write()
     assert (tmp_path / "a.txt").read_text() == "old"
     assert names_in(tmp_path) == ["a.txt"]
 
 
 def test_errors_name_the_file_and_not_the_scratch(tmp_path):
-    with (
-        pytest.raises(ValueError, match=r"a!b\.txt: bad") as caught,
-        new_file(tmp_path / "a!b.txt") as scratch,
-    ):
-        assert scratch.name == "out.txt"
-        raise ValueError(f"{scratch}: bad")
+    def write():
+        with new_file(tmp_path / "a!b.txt") as scratch:
+            assert scratch.name == "out.txt"
+            raise ValueError(f"{scratch}: bad")
+
+    with pytest.raises(ValueError, match=r"a!b\.txt: bad") as caught:
+        write()
     assert "out.txt" not in str(caught.value)
 
 
