@@ -40,7 +40,7 @@ def add_layers(path, layers, wkt: str | None, feedback) -> None:
         When GDAL or SQLite cannot write.
     Cancelled
     """
-    from wavelet_gis.io.geopackage import check_tables, write_styles
+    from wavelet_gis.io.geopackage import check_database, check_rows, write_styles
     from wavelet_gis.io.read_back import read_back
 
     styles, n_rows = [], {}
@@ -52,7 +52,8 @@ def add_layers(path, layers, wkt: str | None, feedback) -> None:
         n_rows[layer.name] = len(layer.geometry)
         styles.append((layer.name, layer.title, layer.style, layer.description))
     write_styles(path, styles)
-    read_back(path, partial(check_tables, n_rows=n_rows))
+    read_back(path, check_database)
+    read_back(path, partial(check_rows, n_rows=n_rows))
 
 
 def _create(path, layer, wkt) -> None:

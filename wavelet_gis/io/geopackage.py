@@ -19,7 +19,8 @@ from wavelet_gis.io.names import MAX_DATABASE_NAME
 
 __all__ = [
     "LayerStyle",
-    "check_tables",
+    "check_database",
+    "check_rows",
     "create_geopackage",
     "open_for_writing",
     "open_stranger",
@@ -140,8 +141,8 @@ def open_stranger(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
         connection.close()
 
 
-def check_tables(path: str | os.PathLike[str], n_rows: Mapping[str, int]) -> None:
-    """Read a GeoPackage back: SQLite's own check, and the number of rows of tables.
+def check_database(path: str | os.PathLike[str]) -> None:
+    """Read a GeoPackage back by SQLite's own check.
 
     Raises
     ------
@@ -150,8 +151,19 @@ def check_tables(path: str | os.PathLike[str], n_rows: Mapping[str, int]) -> Non
     """
     with open_stranger(path) as connection:
         verdict = str(connection.execute("PRAGMA quick_check(1)").fetchone()[0])
-        if verdict != "ok":
-            raise OutputFileError(f"SQLite finds {verdict}")
+    if verdict != "ok":
+        raise OutputFileError(f"SQLite finds {verdict}")
+
+
+def check_rows(path: str | os.PathLike[str], n_rows: Mapping[str, int]) -> None:
+    """Read a GeoPackage back by the number of rows that its tables must have.
+
+    Raises
+    ------
+    InputFileError, OutputFileError
+        With what is wrong.
+    """
+    with open_stranger(path) as connection:
         for table, n in n_rows.items():
             quoted = '"' + table.replace('"', '""') + '"'
             (there,) = connection.execute(f"SELECT COUNT(*) FROM {quoted}").fetchone()  # nosec B608

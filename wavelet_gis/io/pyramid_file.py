@@ -32,7 +32,8 @@ from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.array_codec import ArrayHeader, decode_array, encode_array, header_of
 from wavelet_gis.io.geopackage import (
-    check_tables,
+    check_database,
+    check_rows,
     create_geopackage,
     open_for_writing,
     open_stranger,
@@ -123,7 +124,8 @@ def write_pyramid(
             if progress is not None and progress(done / total) is False:
                 raise Cancelled("writing the pyramid was cancelled; nothing was kept.")
     n_rows = {"wavelet_metadata": len(metadata), "wavelet_arrays": len(arrays)}
-    read_back(path, partial(check_tables, n_rows=n_rows))
+    read_back(path, check_database)
+    read_back(path, partial(check_rows, n_rows=n_rows))
 
 
 def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:

@@ -59,7 +59,7 @@ def read_back(path: str | os.PathLike[str], check: Check) -> None:
     waiting = _pending.get(os.fspath(path))
     if waiting is None:
         check(path)
-    else:
+    elif check not in waiting:  # a database may have had several writers
         waiting.append(check)
 
 

@@ -9,7 +9,7 @@ from functools import partial
 
 from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.errors import CrsWarning, OutputFileError
-from wavelet_gis.io.geopackage import LayerStyle, check_tables, now, write_styles
+from wavelet_gis.io.geopackage import LayerStyle, check_database, check_rows, now, write_styles
 from wavelet_gis.io.names import plain_folder
 from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.products.layers import Layer
@@ -59,7 +59,8 @@ def add_layers(
     finally:
         pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": None})
     write_styles(path, styles)
-    read_back(path, partial(check_tables, n_rows={**n_rows, **_index_rows(n_rows)}))
+    read_back(path, check_database)
+    read_back(path, partial(check_rows, n_rows={**n_rows, **_index_rows(n_rows)}))
     return n_features
 
 
