@@ -87,12 +87,13 @@ class Console:
             self._held_warnings.append(" ".join(str(message).split()))
 
         with warnings.catch_warnings():
-            from wavelet_core.errors import SlowFallbackWarning
+            from wavelet_core.errors import SlowFallbackWarning, UnstableDesignWarning
             from wavelet_gis.errors import TerrainWarning
 
             # What libraries warn of is for developers; ours is for the user, each once.
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", TerrainWarning)
+            warnings.simplefilter("always", UnstableDesignWarning)
             warnings.simplefilter("once", SlowFallbackWarning)
             warnings.showwarning = show
             yield

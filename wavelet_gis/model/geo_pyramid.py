@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import Pyramid, TriangleMesh
-from wavelet_core.accuracy.level_errors import LevelErrors, level_errors
+from wavelet_core import Progress, Pyramid, TriangleMesh
+from wavelet_core.metrics import LevelErrors
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.cloud_origin import PointSource
@@ -52,7 +51,7 @@ class GeoPyramid:
     source_name : str
         The input's file name.
     errors : tuple of LevelErrors, or None
-        Size and errors of each level, the finest first, in the input's unit of z.
+        Size and errors of each level, the coarsest first, in the input's unit of z.
     history : tuple of str
         One line for each change since the analysis (filters).
     """
@@ -66,7 +65,7 @@ class GeoPyramid:
     errors: tuple[LevelErrors, ...] | None = None
     history: tuple[str, ...] = ()
 
-    def with_errors(self, progress: Callable[[float], bool | None] | None = None) -> GeoPyramid:
+    def with_errors(self, progress: Progress | None = None) -> GeoPyramid:
         """Return the pyramid with the errors of every level computed.
 
         Parameters
@@ -80,7 +79,7 @@ class GeoPyramid:
                 rmse_surface=level.rmse_surface / unit,
                 max_error_surface=level.max_error_surface / unit,
             )
-            for level in level_errors(self.pyramid, progress)
+            for level in self.pyramid.errors(progress)
         )
         return replace(self, errors=tuple(levels))
 

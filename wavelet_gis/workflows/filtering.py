@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from wavelet_core import denoise
-from wavelet_core.filtering.gains import band_gains, channel_index, check_level, relifted
-from wavelet_core.filtering.noise import channel_noise
+from wavelet_core import Progress, band_gains, channel_noise, denoise, relifted
+from wavelet_core.filtering.gains import channel_index
+from wavelet_core.progress import part_of
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["change_between", "chosen_gains", "denoised_record", "scaled_record"]
-
-Progress = Callable[[float], bool | None]
 
 
 def denoised_record(
@@ -67,7 +65,7 @@ def denoised_record(
             n_pyramids=n_pyramids,
             channels=[name],
             locked=pyramid.locked,
-            progress=_part(progress, k, len(channels)),
+            progress=part_of(progress, k / len(channels), (k + 1) / len(channels)),
         )
         pyramid = relifted(pyramid, mesh)
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
@@ -110,7 +108,7 @@ def chosen_gains(
     elif levels is not None:
         chosen = band_gains(geo.pyramid, levels=levels)
     for level, gain in gains:
-        check_level(level, geo.pyramid)
+        geo.pyramid.require_details(level)
         chosen[level] = gain * chosen.get(level, 1.0)
     return chosen
 
@@ -141,9 +139,3 @@ def change_between(before: GeoPyramid, after: GeoPyramid) -> tuple[float, float]
     moved = (new - old) / before.frame.z_scale
     rms = float(np.sqrt(np.mean(moved**2))) if len(moved) else 0.0
     return rms, float(np.abs(moved).max(initial=0.0))
-
-
-def _part(progress: Progress | None, k: int, n: int) -> Progress | None:
-    if progress is None:
-        return None
-    return lambda fraction: progress((k + fraction) / n)

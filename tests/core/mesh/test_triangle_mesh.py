@@ -81,7 +81,7 @@ def test_an_edge_no_surface_has_is_refused_by_name(faces, signal):
 def test_a_flipped_face_is_no_tin_but_a_surface():
     vertices = [[0, 0, 0], [2, 0, 0], [1, 2, 0], [1, 0.5, 1], [1, -1, 0.5]]
     mesh = TriangleMesh(vertices, [[0, 1, 2], [1, 0, 3]])
-    with pytest.raises(MeshError, match=r"face 1 .* use signal='xyz'"):
+    with pytest.raises(MeshError, match=r"face 1 .* use signal 'xyz'"):
         analyse(mesh, levels=1, signal="z")
     analyse(mesh, levels=1, signal="xyz")
 

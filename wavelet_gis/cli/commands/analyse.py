@@ -132,7 +132,7 @@ def _report(
     if geo.errors is not None:
         console.table(
             ("level", "vertices", "triangles", "rmse_coefficients", "rmse_surface", "max_error"),
-            [tuple(level)[:6] for level in geo.errors],
+            [tuple(level)[:6] for level in reversed(geo.errors)],
         )
     console.say(
         f"{n_vertices:,} vertices and {n_triangles:,} triangles in {pyramid.n_levels} levels down "
@@ -148,7 +148,7 @@ def _report(
             "n_coarse_vertices": n_coarse,
             "channels": list(pyramid.channels),
             "parameters": dict(pyramid.parameters),
-            "levels": [level._asdict() for level in geo.errors or ()],
+            "levels": [level._asdict() for level in reversed(geo.errors or ())],
             "seconds": {name: round(seconds, 3) for name, seconds in laps.items()},
         }
     )
