@@ -84,9 +84,9 @@ class Pyramid:
     Examples
     --------
     >>> from wavelet_core import analyse, synthetic
-    >>> pyramid = analyse(synthetic.hills(20, 30), levels=3)
+    >>> pyramid = analyse(synthetic.hills(20, 30), levels=3, partition="quadric")
     >>> pyramid
-    <Pyramid 3 levels, 600 → 300 vertices, z>
+    <Pyramid 3 levels, 600 → 234 vertices, z>
     >>> len(pyramid), pyramid[-1] == pyramid.mesh(3)
     (4, True)
     """

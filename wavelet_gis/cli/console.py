@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from wavelet_gis._program import PROGRAM
 
-__all__ = ["Console"]
+if TYPE_CHECKING:  # the core takes a while to import, which a mistyped command need not wait for
+    from wavelet_core import Progress
 
-Progress = Callable[[float], bool]
+__all__ = ["Console"]
 
 
 class Console:
