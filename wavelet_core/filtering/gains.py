@@ -95,8 +95,7 @@ def relifted(pyramid: Pyramid, mesh: TriangleMesh) -> Pyramid:
             of_pyramid=n_vertices,
             expected=pyramid.attribute_names,
         )
-    first = 2 if pyramid.signal == "z" else 0
-    columns = np.column_stack([mesh.vertices[:, first:], mesh.attributes])
+    columns = pyramid.columns_of(mesh)
     coarse, details = Transform.from_pyramid(pyramid).analyse(columns)
     steps = tuple(
         replace(step, details=frozen(detail))
