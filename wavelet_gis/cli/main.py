@@ -1,8 +1,8 @@
 """The command ``terrain-wavelets``: argument parsing and messages only.
 
-Each command is a module of `wavelet_gis.cli.commands` with ``HELP``, ``add_arguments(parser)`` and
-``run(arguments, console)``. A module that is put there is a command; it imports what it needs when
-it runs, so that ``--help`` comes at once.
+Each command is a module of `wavelet_gis.cli.commands` with ``ORDER`` (its place in the list of
+commands), ``HELP``, ``add_arguments(parser)`` and ``run(arguments, console)``. A module that is put
+there is a command; it imports what it needs when it runs, so that ``--help`` comes at once.
 """
 
 from __future__ import annotations
@@ -13,36 +13,21 @@ import logging
 import os
 import pkgutil
 import re
-import signal
 import sqlite3
 import sys
 from collections.abc import Sequence
 from types import ModuleType
-from typing import Any
 
 from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
-from wavelet_gis.cli import commands
+from wavelet_gis.cli import commands, interrupts
 from wavelet_gis.cli.console import Console
 
 __all__ = ["main"]
 
-REFUSED, INTERRUPTED, TERMINATED = 1, 130, 143
+REFUSED = 1
 
 #: Set to see where an unforeseen error came from.
 DEBUG_VARIABLE = "TERRAIN_WAVELETS_DEBUG"
-
-#: The order in which help lists the commands; any other module follows.
-_ORDER = (
-    "analyse",
-    "info",
-    "extract",
-    "reconstruct",
-    "simplify",
-    "filter",
-    "details",
-    "cluster",
-    "report",
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -67,28 +52,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Their complaints come to us as exceptions; printed too they would be noise.
         logging.getLogger(library).addHandler(logging.NullHandler())
         logging.getLogger(library).propagate = False
-    previous = _stop_on_termination()
-    try:
+    with interrupts.raised():
         return _run(chosen, console)
-    finally:
-        if previous is not None:
-            signal.signal(signal.SIGTERM, previous)
 
 
 def _run(chosen: argparse.Namespace, console: Console) -> int:
+    before = _state(chosen)
     try:
         from wavelet_core.errors import WaveletError
 
         with console.one_line_warnings():
             chosen.run(chosen, console)
+        interrupts.ending()
         sys.stdout.flush()
         return 0
-    except KeyboardInterrupt:
-        _complain("interrupted; nothing was written")
-        return INTERRUPTED
-    except _Terminated:
-        _complain("terminated; nothing was written")
-        return TERMINATED
+    except (KeyboardInterrupt, interrupts.Terminated) as stop:
+        interrupts.ending()
+        return _stopped(stop, chosen, before)
     except BrokenPipeError:
         # The reader of our output has gone (`| head`); what is left to say has no taker.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -110,18 +90,27 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
     return REFUSED
 
 
-class _Terminated(BaseException):
-    """SIGTERM came; unwinds so that scratch files go."""
+def _stopped(stop: BaseException, chosen: argparse.Namespace, before: _State) -> int:
+    """Say that a signal came; one that comes when the output is in place has come too late."""
+    is_interrupt = isinstance(stop, KeyboardInterrupt)
+    word = "interrupted" if is_interrupt else "terminated"
+    if _state(chosen) != before:
+        print(f"{PROGRAM}: {word} after {chosen.output} was written", file=sys.stderr)
+        return 0
+    _complain(f"{word}; nothing was written")
+    return interrupts.INTERRUPTED if is_interrupt else interrupts.TERMINATED
 
 
-def _stop_on_termination() -> Any:
-    def stop(signal_number: int, frame: object) -> None:
-        raise _Terminated
+#: Which file is at the output's path: none, or its inode and time of change.
+_State = tuple[int, int] | None
 
+
+def _state(chosen: argparse.Namespace) -> _State:
     try:
-        return signal.signal(signal.SIGTERM, stop)
-    except ValueError:  # not the main thread, where signals never come
+        found = os.stat(chosen.output)
+    except (AttributeError, OSError, ValueError):  # a command without output, or nothing there yet
         return None
+    return found.st_ino, found.st_mtime_ns
 
 
 def _complain(message: str) -> None:
@@ -138,8 +127,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {_version()}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
-    for name in _command_names():
-        module = importlib.import_module(f"{commands.__name__}.{name}")
+    for name, module in _commands():
         _add_command(subparsers, name, module)
     return parser
 
@@ -154,9 +142,10 @@ def _add_command(
     parser.set_defaults(run=module.run)
 
 
-def _command_names() -> list[str]:
+def _commands() -> list[tuple[str, ModuleType]]:
     names = [m.name for m in pkgutil.iter_modules(commands.__path__) if m.name[0] != "_"]
-    return sorted(names, key=lambda name: (_ORDER.index(name) if name in _ORDER else 99, name))
+    found = [(name, importlib.import_module(f"{commands.__name__}.{name}")) for name in names]
+    return sorted(found, key=lambda command: command[1].ORDER)
 
 
 def _version() -> str:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.model.terrain import Terrain
 
+ORDER = 10
 HELP = "Turn a DEM or a LAS/LAZ file into a reversible wavelet pyramid in one GeoPackage."
 
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
+ORDER = 80
 HELP = "Cluster the vertices by their scales, or learn classes and predict the rest."
 
 RASTER_SUFFIXES = (".tif", ".tiff")

@@ -13,6 +13,7 @@ from wavelet_gis.cli.console import Console
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
+ORDER = 70
 HELP = "Write what each band of scales holds: as points (GPKG), raster bands (TIF) or a picture."
 
 LAYER_SUFFIXES = (".gpkg",)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from wavelet_core.accuracy.between_levels import PartialMesh
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
+ORDER = 30
 HELP = (
     "Write one level of a pyramid, or the mesh of a size or an accuracy, as a TIN (GPKG, PLY, 2DM, "
     "OBJ, STL, GLB, LandXML, DXF) or a raster (GeoTIFF, COG)."

@@ -13,6 +13,7 @@ from wavelet_gis.cli.console import Console
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
+ORDER = 60
 HELP = "Change chosen scales of a pyramid or take out noise; write a DEM, a LAS file or a pyramid."
 
 #: Stands for the standard deviation of the noise where it is not given.

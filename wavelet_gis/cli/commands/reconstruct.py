@@ -8,6 +8,7 @@ from pathlib import Path
 from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
 
+ORDER = 40
 HELP = "Give back the DEM or the LAS/LAZ file that a pyramid was made from, bit for bit."
 
 

@@ -21,6 +21,7 @@ from wavelet_gis.cli.commands.extract import (
 )
 from wavelet_gis.cli.console import Console
 
+ORDER = 50
 HELP = (
     "Write the TIN of a number of vertices, or of an accuracy, with the least error: GPKG, PLY, "
     "2DM, OBJ, STL, GLB, LandXML (.xml), DXF; or the raster of that TIN (GeoTIFF, COG)."
