@@ -39,7 +39,9 @@ class LevelErrors(NamedTuple):
 
 
 def level_errors(
-    pyramid: Pyramid, progress: Callable[[float], bool | None] | None = None
+    pyramid: Pyramid,
+    progress: Callable[[float], bool | None] | None = None,
+    finest: TriangleMesh | None = None,
 ) -> list[LevelErrors]:
     """Return size and errors of every level, the finest first.
 
@@ -49,13 +51,15 @@ def level_errors(
         What is measured.
     progress : callable, optional
         Called with a fraction in [0, 1] after each level; the work stops when it returns False.
+    finest : TriangleMesh, optional
+        The pyramid's finest mesh, where it has been synthesised already.
 
     Raises
     ------
     Cancelled
         ``progress`` returned False.
     """
-    finest = pyramid.mesh(pyramid.n_levels)
+    finest = pyramid.synthesise() if finest is None else finest
     reference = _columns(finest)
     extent = reference.max(axis=0) - reference.min(axis=0)
     scale = np.where(extent > 0, extent, 1.0)

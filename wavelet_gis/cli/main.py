@@ -21,6 +21,7 @@ from types import ModuleType
 from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
 from wavelet_gis.cli import commands, interrupts
 from wavelet_gis.cli.console import Console
+from wavelet_gis.cli.flags import flag_names
 
 __all__ = ["main"]
 
@@ -47,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         chosen = _parser().parse_args(arguments)
     except SystemExit as stop:  # argparse has said why
         return stop.code if isinstance(stop.code, int) else 2
-    console = Console(quiet=chosen.quiet, as_json=chosen.json)
+    console = Console(quiet=chosen.quiet, as_json=chosen.json, name_of=chosen.name_of)
     for library in ("laspy", "rasterio", "pyogrio"):
         # Their complaints come to us as exceptions; printed too they would be noise.
         logging.getLogger(library).addHandler(logging.NullHandler())
@@ -61,7 +62,7 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
     try:
         from wavelet_core.errors import WaveletError
 
-        with console.one_line_warnings():
+        with console.told_once():
             chosen.run(chosen, console)
         interrupts.ending()
         sys.stdout.flush()
@@ -79,7 +80,7 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
         if os.environ.get(DEBUG_VARIABLE):
             raise
         if isinstance(error, WaveletError):
-            _complain(str(error))
+            _complain(error.in_words(chosen.name_of))
         elif isinstance(error, OSError | sqlite3.Error):
             _complain(f"the operating system refused: {error}; is the disk full?")
         else:
@@ -127,19 +128,21 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {_version()}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
-    for name, module in _commands():
-        _add_command(subparsers, name, module)
+    parsers = [_add_command(subparsers, name, module) for name, module in _commands()]
+    for one in parsers:
+        one.set_defaults(name_of=flag_names(one, parsers))
     return parser
 
 
 def _add_command(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser], name: str, module: ModuleType
-) -> None:
+) -> argparse.ArgumentParser:
     parser = subparsers.add_parser(name, help=module.HELP, description=module.HELP)
     module.add_arguments(parser)
     parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=module.run)
+    return parser
 
 
 def _commands() -> list[tuple[str, ModuleType]]:
