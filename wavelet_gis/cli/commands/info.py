@@ -63,6 +63,7 @@ def _lines(summary: dict[str, Any]) -> list[str]:
         f"software    {summary['format']['software']}, format {summary['format']['version']}",
     ]
     lines += [f"change      {change}" for change in summary["history"]]
+    lines += [f"note        {note['text']}" for note in summary.get("notes", [])]
     return lines
 
 
