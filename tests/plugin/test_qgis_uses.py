@@ -292,7 +292,7 @@ def test_the_choices_are_served_by_the_core(qgis):
     from wavelet_core.lifting.options import PARTITIONS, SIGNALS
     from wavelet_core.lifting.prediction import PREDICTIONS
     from wavelet_core.lifting.update import UPDATES
-    from wavelet_gis.io.meshes import MESH_SUFFIXES
+    from wavelet_gis.io.formats import MESH_SUFFIXES
 
     assert set(design.PARTITIONS) <= set(PARTITIONS)
     assert set(design.PREDICTIONS) <= set(PREDICTIONS.values())

@@ -266,8 +266,8 @@ def _source_figures(geo: GeoPyramid, finest: TriangleMesh) -> dict[str, Any]:
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     return {
         "name": geo.source_name.replace("\\", "/").rsplit("/", 1)[-1],
-        "kind": geo.source.kind,
-        "is_exact": bool(geo.source.is_exact),
+        "kind": geo.origin.kind,
+        "is_exact": bool(geo.origin.is_exact),
         "n_vertices": finest.n_vertices,
         "n_faces": finest.n_faces,
         "n_levels": geo.pyramid.n_levels,

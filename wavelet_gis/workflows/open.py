@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
 
 from wavelet_gis.crs.frame import vertical_unit_name
 from wavelet_gis.errors import CrsError, InputFileError
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem
 
-__all__ = ["CLOUD_SUFFIXES", "open_terrain"]
-
-#: What is read with laspy; anything else is left to GDAL.
-CLOUD_SUFFIXES = (".las", ".laz")
+__all__ = ["open_terrain"]
 
 
 def open_terrain(
@@ -56,11 +53,13 @@ def open_terrain(
     from wavelet_gis.crs.lookup import coordinate_system
 
     override = coordinate_system(crs) if crs else None
-    if Path(path).suffix.lower() in CLOUD_SUFFIXES:
+    if suffix_of(path) in CLOUD_SUFFIXES:
         from wavelet_gis.io.las import read_cloud
 
         if band is not None:
-            raise InputFileError(f"{path}: a point cloud has no bands; leave --band out.")
+            raise InputFileError(
+                "{path}: a point cloud has no bands; leave {0} out.", "band", path=path
+            )
         cloud, place = read_cloud(path, attributes=attributes, classes=classes, carry=carry)
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
@@ -70,7 +69,10 @@ def open_terrain(
 
     if attributes or classes is not None:
         raise InputFileError(
-            f"{path}: --attributes and --classes are for point clouds; leave them out for a raster."
+            "{path}: {0} and {1} are for point clouds; leave them out for a raster.",
+            "attributes",
+            "classes",
+            path=path,
         )
     dem, place = read_dem(path, band=band)
     system = override or coordinate_system(place.wkt)

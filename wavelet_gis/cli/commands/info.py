@@ -7,6 +7,7 @@ from typing import Any
 
 from wavelet_gis.cli.console import Console
 
+ORDER = 20
 HELP = "Tell what a pyramid file holds: source, CRS, parameters, and size and errors by level."
 
 
