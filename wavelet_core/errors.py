@@ -82,10 +82,6 @@ class OptionError(WaveletError, ValueError):
     """An option whose value is refused, or options that contradict each other: ``options``."""
 
 
-class FilterError(WaveletError, ValueError):
-    """A prediction or update filter that cannot be built."""
-
-
 class PyramidError(WaveletError, ValueError):
     """A pyramid whose parts do not fit together, or a level that it does not have.
 
@@ -116,3 +112,7 @@ class WaveletWarning(UserWarning):
 
 class SlowFallbackWarning(WaveletWarning):
     """Numba is absent, so the kernels run as plain Python."""
+
+
+class UnstableDesignWarning(WaveletWarning):
+    """A pair of filters of the paper whose coefficients may grow without bound."""

@@ -58,14 +58,22 @@ def fitted(
     """
     if mesh.attribute_names != original.attribute_names:
         raise OptionError(
-            f"the mesh has the attributes {mesh.attribute_names}, the original "
-            f"{original.attribute_names}; fit a level of its own pyramid."
+            "{0} has the attributes {of_mesh}, {1} {of_original}; fit a level of its own pyramid.",
+            "mesh",
+            "original",
+            of_mesh=mesh.attribute_names,
+            of_original=original.attribute_names,
         )
     free = np.ones(mesh.n_vertices, dtype=bool)
     if locked is not None:
         mask = np.asarray(locked)
         if mask.shape != free.shape or mask.dtype != bool:
-            raise OptionError(f"locked has shape {mask.shape}; give {free.shape} of bool.")
+            raise OptionError(
+                "{0} has shape {shape}; give {due} of bool.",
+                "locked",
+                shape=mask.shape,
+                due=free.shape,
+            )
         free = ~mask
     cover = cover_of(mesh, original.vertices[:, :2]) if cover is None else cover
     indices = mesh.faces[cover.face].ravel()

@@ -112,7 +112,12 @@ class SurfaceShape:
             Another name.
         """
         if name not in SHAPE_NAMES:
-            raise OptionError(f"there is no shape {name!r}; choose of {', '.join(SHAPE_NAMES)}.")
+            raise OptionError(
+                "there is no shape {given}; choose of {shapes}.",
+                "name",
+                given=repr(name),
+                shapes=", ".join(SHAPE_NAMES),
+            )
         values: FloatArray = getattr(self, name)
         return values
 

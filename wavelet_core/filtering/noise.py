@@ -146,4 +146,6 @@ def deviation_of(details: FloatArray) -> float:
 def check_sigma(sigma: float | None) -> None:
     """Raise :class:`OptionError` unless sigma is left out or a number of 0 or more."""
     if sigma is not None and not (np.isfinite(sigma) and sigma >= 0):
-        raise OptionError(f"sigma is {sigma}; give the noise's standard deviation, 0 or more.")
+        raise OptionError(
+            "{0} is {given}; give the noise's standard deviation, 0 or more.", "sigma", given=sigma
+        )

@@ -2,34 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._kernels._jit import announce_fallback
 from .._validate import FloatArray, frozen
-from ..errors import Cancelled, MeshError, OptionError
+from ..errors import MeshError, OptionError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
-from ..partition._mutable_level import SurfaceLevel
 from ..partition.error_guided import SurfaceRules, analyse_surface
-from ..partition.orderings import (
-    ColouringPartition,
-    LevelView,
-    Partition,
-    QuadricPartition,
-    RandomPartition,
-    SurfacePartition,
-)
+from ..partition.orderings import LevelView, Partition
+from ..partition.registry import PARTITIONS, PartitionInput
+from ..progress import Progress, report
 from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
 from .pyramid import Pyramid
+from .signal import SIGNALS
 from .step import Step, analyse_level
-
-Progress = Callable[[float], bool | None]
 
 #: Share of the vertices that one level is expected to keep, for the progress bar alone.
 EXPECTED_KEPT = 0.73
@@ -39,6 +32,7 @@ LEAST_WEIGHT = 1e-9
 
 def analyse(
     mesh: TriangleMesh,
+    *,
     levels: int | None = None,
     partition: str | None = None,
     prediction: str | None = None,
@@ -49,10 +43,9 @@ def analyse(
     max_error: float | None = None,
     max_rms: float | None = None,
     progress: Progress | None = None,
-    *,
     attribute_weights: Sequence[float] | None = None,
-    bending_weight: float = 1.0,
-    seed: int = 0,
+    bending_weight: float | None = None,
+    seed: int | None = None,
     norm: str | None = None,
     removal_fraction: float | None = None,
 ) -> Pyramid:
@@ -73,7 +66,7 @@ def analyse(
         How an odd vertex is estimated from its neighbours: ``"uniform"``, ``"cotangent"``,
         ``"geometric"``, ``"nnls"``, ``"least_squares"``, ``"barycentric"`` or ``"plane"``; by
         default ``"barycentric"`` with ``partition="surface"``, else ``"geometric"``. The paper's
-        short names (``"GL"``) and joined designs (``"GLMN"``) are accepted.
+        short names (``"GL"``) and joined designs (``"GLMN"``) are accepted, in capitals or not.
     update : {"minimum_norm", "martinez_ortega", "one_ring_mean", "none"}, optional
         How the details are handed on to the even vertices. By default ``"minimum_norm"``; with
         ``partition="surface"`` and ``norm="max"`` it is ``"none"``.
@@ -92,10 +85,10 @@ def analyse(
         Called with a fraction in [0, 1]; the work stops when it returns False.
     attribute_weights : sequence of float, optional
         Weight of each attribute, against the coordinates, in cost and prediction; 1 by default.
-    bending_weight : float
-        Weight of the bending energy in the cost of ``partition="quadric"``.
-    seed : int
-        Of the order of ``partition="random"``.
+    bending_weight : float, optional
+        Weight of the bending energy in the cost of ``partition="quadric"``; by default 1.
+    seed : int, optional
+        Of the order of ``partition="random"``; by default 0.
     norm : {"rms", "max"}, optional
         What ``partition="surface"`` keeps small: the mean square of the vertical errors, or the
         largest. By default ``"max"`` if ``max_error`` is given, else ``"rms"``.
@@ -115,9 +108,16 @@ def analyse(
         The mesh is no manifold, or, with ``signal="z"``, has a face that is not
         counter-clockwise in plan.
     OptionError
-        An option that is not served.
+        A value out of bounds, a name that is not listed above, or options that contradict each
+        other: an option of another partition, an update beside a joined design, ``"plane"`` with
+        ``"martinez_ortega"``.
     Cancelled
         ``progress`` returned False.
+
+    Warns
+    -----
+    UnstableDesignWarning
+        ``"least_squares"`` with ``"martinez_ortega"``, the paper's unstable baseline.
 
     Notes
     -----
@@ -164,8 +164,9 @@ class _Analysis:
         self._mesh = mesh
         self._options = options
         self._progress = progress
-        self._in_plan = options.signal == "z"
-        if self._in_plan:
+        self._in_plan = SIGNALS[options.signal].keeps_plan
+        self._partition_row = PARTITIONS[options.partition]
+        if self._in_plan or self._partition_row.needs_upright:
             _require_upright(mesh)
         self._all_locked = locked
         self._faces = mesh.faces.astype(np.int32)
@@ -179,7 +180,7 @@ class _Analysis:
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
         self._report(0.0)
-        if self._options.partition == "surface":
+        if self._partition_row.needs_upright:
             build_connectivity(self._faces, self._mesh.n_vertices)  # refuses what is no manifold
             self._report(0.0)
         steps = self._surface_steps() if self._is_surface_lifting() else self._steps()
@@ -189,7 +190,7 @@ class _Analysis:
             horizontal=None if not self._in_plan else frozen(self._mesh.vertices[:, :2]),
             coarse=frozen(self._coefficients),
             steps=tuple(reversed(steps)),
-            channels=(("z",) if self._in_plan else ("x", "y", "z")) + self._mesh.attribute_names,
+            channels=SIGNALS[self._options.signal].coordinates + self._mesh.attribute_names,
             signal=self._options.signal,  # type: ignore[arg-type]
             update=self._options.update,
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
@@ -242,19 +243,16 @@ class _Analysis:
         return result.steps
 
     def _make_partition(self) -> Partition:
-        options = self._options
-        if options.partition == "quadric":
-            return QuadricPartition(options.bending_weight)
-        if options.partition == "random":
-            return RandomPartition(options.seed)
-        if options.partition == "colouring":
-            return ColouringPartition()
-        _require_upright(self._mesh)
         columns = np.hstack([self._mesh.vertices[:, 2:], self._mesh.attributes])
-        heights = columns * self._scale.height_weights()
-        plan = self._mesh.vertices[:, :2]
-        level = SurfaceLevel(plan, heights, self._faces, self._locked, with_update=False)
-        return SurfacePartition(level, options.norm, options.removal_fraction)
+        return self._partition_row.make(
+            PartitionInput(
+                plan=self._mesh.vertices[:, :2],
+                heights=columns * self._scale.height_weights(),
+                faces=self._faces,
+                locked=self._locked,
+                options=self._options.of_partition(),
+            )
+        )
 
     def _step(self) -> Step | None:
         """Analyse one level; None, and the level unchanged, where a rule forbids it."""
@@ -332,8 +330,7 @@ class _Analysis:
             )
             gone = n_input - (len(self._coefficients) if n_vertices is None else n_vertices)
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
-        if self._progress(fraction) is False:
-            raise Cancelled("the analysis was cancelled; nothing was kept.")
+        report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
 
 
 class _Normalisation:
@@ -372,8 +369,11 @@ def _locked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.boo
     mask = np.array(locked)
     if mask.shape != (mesh.n_vertices,) or mask.dtype != bool:
         raise OptionError(
-            f"locked has shape {mask.shape} and dtype {mask.dtype}; give one bool for each of "
-            f"{mesh.n_vertices} vertices."
+            "{0} has shape {shape} and dtype {dtype}; give one bool for each of {n} vertices.",
+            "locked",
+            shape=mask.shape,
+            dtype=mask.dtype,
+            n=mesh.n_vertices,
         )
     return mask
 
@@ -383,7 +383,11 @@ def _require_upright(mesh: TriangleMesh) -> None:
     if len(areas) and areas.min() <= 0:
         face = int(np.argmax(areas <= 0))
         raise MeshError(
-            f"face {face} {mesh.faces[face].tolist()} is flipped or flat in plan (area "
-            f"{areas[face]:g}), so the mesh is no TIN; turn or remove it, or use signal='xyz'.",
+            "face {face} {vertices} is flipped or flat in plan (area {area:g}), so the mesh is no "
+            "TIN; turn or remove it, or use {0} 'xyz'.",
             face,
+            "signal",
+            face=face,
+            vertices=mesh.faces[face].tolist(),
+            area=areas[face],
         )

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from wavelet_gis._program import PROGRAM
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # the core takes a while to import, which a mistyped command need not wait for
+    from wavelet_core import Progress
     from wavelet_gis.notes import Note
 
 __all__ = ["Console"]
-
-Progress = Callable[[float], bool]
 
 
 class Console:
@@ -91,7 +90,7 @@ class Console:
         work begins or the command is done: input that is refused gets one line, which says what is
         wrong, and no others beside it.
         """
-        from wavelet_core.errors import SlowFallbackWarning
+        from wavelet_core.errors import SlowFallbackWarning, UnstableDesignWarning
         from wavelet_gis.errors import TerrainWarning
         from wavelet_gis.notes import collected
 
@@ -111,6 +110,7 @@ class Console:
             # What libraries warn of is for developers; ours is for the user, each once.
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", TerrainWarning)
+            warnings.simplefilter("always", UnstableDesignWarning)
             warnings.simplefilter("once", SlowFallbackWarning)
             warnings.showwarning = show
             yield

@@ -16,7 +16,7 @@ import json
 import math
 import os
 import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
@@ -24,9 +24,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 import wavelet_core
-from wavelet_core import Pyramid, Step
-from wavelet_core.accuracy.level_errors import LevelErrors
-from wavelet_core.errors import Cancelled, PyramidError
+from wavelet_core import Progress, Pyramid, PyramidError, Step
+from wavelet_core.metrics import LevelErrors
+from wavelet_core.progress import report
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.array_codec import ArrayHeader, decode_array, encode_array, header_of
@@ -84,8 +84,6 @@ _STEP_DTYPES = {
     "details": "<f8",
 }
 
-Progress = Callable[[float], bool | None]
-
 
 def write_pyramid(
     path: str | os.PathLike[str], geo: GeoPyramid, progress: Progress | None = None
@@ -117,8 +115,7 @@ def write_pyramid(
         for name, array in arrays.items():
             _write_array(connection, name, array, pool)
             done += array.nbytes
-            if progress is not None and progress(done / total) is False:
-                raise Cancelled("writing the pyramid was cancelled; nothing was kept.")
+            report(progress, done / total, "writing the pyramid was cancelled; nothing was kept.")
 
 
 def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
@@ -250,7 +247,7 @@ def _from_parts(
         vertical_unit=str(metadata["vertical_unit"]),
         origin=origin,
         source_name=str(metadata["source_name"]),
-        errors=levels if len(levels) == n_levels + 1 and _are_measured(levels) else None,
+        errors=levels[::-1] if len(levels) == n_levels + 1 and _are_measured(levels) else None,
         history=tuple(str(line) for line in metadata["history"]),
         notes=tuple(Note.from_dict(fields) for fields in metadata.get("notes", [])),
     )
@@ -268,7 +265,7 @@ def _write_levels(connection: sqlite3.Connection, geo: GeoPyramid) -> None:
             for level in range(pyramid.n_levels, -1, -1)
         ]
     else:
-        rows = [tuple(level) for level in geo.errors]
+        rows = [tuple(level) for level in reversed(geo.errors)]
     connection.executemany(
         "INSERT INTO wavelet_levels (level, n_vertices, n_faces, rmse_coefficients, rmse_surface, "
         "max_error_surface, n_uncovered) VALUES (?,?,?,?,?,?,?)",
@@ -371,9 +368,11 @@ class _Arrays:
             (array_id,),
         ).fetchone()[0]
         try:
-            return decode_array(header, self._chunks(array_id), int(n_bytes), self._pool)
+            array = decode_array(header, self._chunks(array_id), int(n_bytes), self._pool)
         except PyramidError as error:
             raise PyramidError(f"array {name}: {error}") from error
+        array.flags.writeable = False  # so that the pyramid can take it without a copy
+        return array
 
     def all_named(self, prefix: str) -> dict[str, NDArray[Any]]:
         """Return all arrays whose names begin so."""

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import Pyramid, TriangleMesh
-from wavelet_core.accuracy.level_errors import LevelErrors, level_errors
+from wavelet_core import Progress, Pyramid, TriangleMesh
+from wavelet_core.metrics import LevelErrors, level_errors
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.model.mesh_origin import mesh_in_file
 from wavelet_gis.model.origin import Origin, Original
@@ -37,7 +36,7 @@ class GeoPyramid:
     source_name : str
         The input's file name.
     errors : tuple of LevelErrors, or None
-        Size and errors of each level, the finest first, in the input's unit of z.
+        Size and errors of each level, the coarsest first, in the input's unit of z.
     history : tuple of str
         One line for each change since the analysis (filters).
     notes : tuple of Note
@@ -55,9 +54,7 @@ class GeoPyramid:
     notes: tuple[Note, ...] = ()
 
     def with_errors(
-        self,
-        progress: Callable[[float], bool | None] | None = None,
-        finest: TriangleMesh | None = None,
+        self, progress: Progress | None = None, finest: TriangleMesh | None = None
     ) -> GeoPyramid:
         """Return the pyramid with the errors of every level computed.
 

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core import Progress
 from wavelet_core.errors import OptionError
 from wavelet_core.features.signature import energy_signature, plain_features, scale_features
 from wavelet_gis.io.atomic import check_output
@@ -33,7 +34,7 @@ from wavelet_gis.workflows.classify import (
 )
 from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.labels import cloud_with_classes
-from wavelet_gis.workflows.progress import Progress, part_of
+from wavelet_gis.workflows.progress import part_of
 
 __all__ = ["Labelled", "check_label_output", "classify", "cluster"]
 

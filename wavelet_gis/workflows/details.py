@@ -8,6 +8,7 @@ from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
+from wavelet_core import Progress
 from wavelet_core.errors import OptionError
 from wavelet_core.features.shape import SHAPE_NAMES
 from wavelet_core.features.spectrum import vertex_details
@@ -26,7 +27,6 @@ from wavelet_gis.products.vertex_tables import (
     vertex_layer,
 )
 from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
-from wavelet_gis.workflows.progress import Progress
 
 __all__ = ["QUANTITIES", "Details", "LevelDetails", "Quantity", "details"]
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-__all__ = ["Progress", "part_of"]
+from wavelet_core import Progress
 
-#: Called with a fraction in [0, 1]; the work stops when it returns False.
-Progress = Callable[[float], bool | None]
+__all__ = ["part_of"]
 
 
 def part_of(progress: Progress | None, start: float, stop: float) -> Callable[[float], bool] | None:

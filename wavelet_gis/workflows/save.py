@@ -13,7 +13,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_gis.io.atomic import check_output, new_file
 from wavelet_gis.io.formats import (
@@ -23,7 +23,6 @@ from wavelet_gis.io.formats import (
     suffix_of,
 )
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.progress import Progress
 
 __all__ = [
     "Layers",

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Unpack
 
+from wavelet_core import Progress
 from wavelet_core import analyse as core_analyse
 from wavelet_core.accuracy.fitted_heights import fitted
 from wavelet_core.errors import OptionError
@@ -16,7 +17,7 @@ from wavelet_gis.workflows.analyse import Analysis
 from wavelet_gis.workflows.clock import Clock
 from wavelet_gis.workflows.inputs import require_terrain
 from wavelet_gis.workflows.options import WaveletOptions, core_options
-from wavelet_gis.workflows.progress import Progress, part_of
+from wavelet_gis.workflows.progress import part_of
 from wavelet_gis.workflows.stopping import note_unreached_size, working_rules
 from wavelet_gis.workflows.surface import Surface, measured
 

@@ -110,7 +110,7 @@ def _report(
     if analysis.geo.errors is not None:
         console.table(
             ("level", "vertices", "triangles", "rmse_coefficients", "rmse_surface", "max_error"),
-            [tuple(level)[:6] for level in analysis.geo.errors],
+            [tuple(level)[:6] for level in reversed(analysis.geo.errors)],
         )
     console.say(
         f"{figures['n_vertices']:,} vertices and {figures['n_triangles']:,} triangles in "
