@@ -24,6 +24,7 @@ from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.vertex_raster import Bands, label_band
+from wavelet_gis.progress import part_of
 from wavelet_gis.workflows.classify import (
     Validation,
     cluster_summary,
@@ -32,9 +33,8 @@ from wavelet_gis.workflows.classify import (
     spatial_folds,
     validate_classes,
 )
-from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.labels import cloud_with_classes
-from wavelet_gis.workflows.progress import part_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 
 __all__ = ["Labelled", "check_label_output", "classify", "cluster"]
 
@@ -133,7 +133,9 @@ def check_label_output(
     suffixes = (PYRAMID_SUFFIX, *RASTER_SUFFIXES, *CLOUD_SUFFIXES)
     check_output(path, overwrite=overwrite, suffixes=suffixes, inputs=inputs)
     if suffix_of(path) in CLOUD_SUFFIXES and not is_learned:
-        raise OptionError("clusters are no LAS classes; write .gpkg or .tif, or use {0}.", "learn")
+        raise OptionError(
+            "clusters are no LAS classes; write .gpkg or .tif, or learn classes with {0}.", "learn"
+        )
 
 
 def cluster(

@@ -15,8 +15,8 @@ from wavelet_core.filtering.noise import estimate_noise
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
-from wavelet_gis.workflows.progress import part_of
+from wavelet_gis.progress import part_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
 from wavelet_gis.workflows.save import Layers, write_pyramid_file
 

@@ -69,7 +69,7 @@ def save(result: Any, path: Path, *, overwrite: bool = False, **options: Any) ->
     Raises
     ------
     OptionError
-        Something that is no result of a workflow.
+        Something that no workflow returned.
     OutputFileError
         A suffix that does not fit, a file that exists, or a folder that cannot be written.
     """
@@ -108,7 +108,7 @@ def check_surface_output(
     OutputFileError
         See `wavelet_gis.io.atomic.check_output`.
     OptionError
-        Options of a raster for what is none.
+        Options of a raster for an output that is not one.
     """
     suffixes = (PYRAMID_SUFFIX, *MESH_SUFFIXES, *RASTER_SUFFIXES)
     check_output(path, overwrite=overwrite, suffixes=suffixes, inputs=inputs)

@@ -13,13 +13,16 @@ from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import cover_of
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected
+from wavelet_gis.progress import Clock, part_of
 from wavelet_gis.workflows.analyse import Analysis
-from wavelet_gis.workflows.clock import Clock
-from wavelet_gis.workflows.inputs import require_terrain
-from wavelet_gis.workflows.options import WaveletOptions, core_options
-from wavelet_gis.workflows.progress import part_of
-from wavelet_gis.workflows.stopping import note_unreached_size, working_rules
-from wavelet_gis.workflows.surface import Surface, measured
+from wavelet_gis.workflows.extract import Surface, measured
+from wavelet_gis.workflows.options import (
+    WaveletOptions,
+    core_options,
+    note_unreached_size,
+    require_terrain,
+    working_rules,
+)
 
 __all__ = ["Simplified", "simplify"]
 

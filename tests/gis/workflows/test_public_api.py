@@ -52,7 +52,7 @@ def test_the_workflows_need_numpy_and_scipy_only():
         "import wavelet_gis.workflows.analyse, wavelet_gis.workflows.simplify\n"
         "import wavelet_gis.workflows.extract, wavelet_gis.workflows.filtering\n"
         "import wavelet_gis.workflows.cluster, wavelet_gis.workflows.details\n"
-        "import wavelet_gis.workflows.open_data\n"
+        "import wavelet_gis.workflows.open\n"
         "heavy = {'rasterio', 'pyogrio', 'laspy', 'pyproj', 'shapely', 'sklearn', 'matplotlib'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
@@ -262,11 +262,11 @@ def test_meshes_and_dems_in_memory(tif):
 
 
 def test_what_is_no_terrain_is_refused(analysis, tmp_path):
-    with pytest.raises(OptionError, match="a list is no terrain"):
+    with pytest.raises(OptionError, match="a list holds no terrain"):
         wg.open([1, 2])
-    with pytest.raises(OptionError, match="Analysis is no terrain that can be analysed"):
+    with pytest.raises(OptionError, match="Analysis is not a terrain that can be analysed"):
         wg.analyse(analysis)
-    with pytest.raises(OptionError, match="Terrain is no pyramid"):
+    with pytest.raises(OptionError, match="Terrain is not a pyramid"):
         wg.extract(wg.open(analysis.mesh(0), crs="EPSG:32632"))
     with pytest.raises(OptionError, match="cannot be saved"):
         wg.save(3, tmp_path / "a.tif")

@@ -8,7 +8,7 @@ from typing import Any
 from wavelet_gis.cli.console import Console
 
 ORDER = 20
-HELP = "Tell what a pyramid file holds: source, CRS, parameters, and size and errors by level."
+HELP = "Show what a pyramid file holds: source, CRS, parameters, size and errors by level."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
