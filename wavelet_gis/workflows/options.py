@@ -119,15 +119,15 @@ def note_unreached_size(pyramid: Pyramid, target_vertices: int | None) -> None:
     reached = pyramid.n_vertices(0)
     if target_vertices is None or reached <= target_vertices:
         return
-    # Why it stopped is the core's knowledge; where it does not tell, the size alone is said.
-    reason = getattr(pyramid, "stopped_by", None)
+    # Why it stopped is the core's knowledge; a core that keeps no record has the size told alone.
+    record = getattr(pyramid, "stop", None)
     note(
         "size_not_reached",
         "the coarsest level has {n_vertices:,} vertices where {target_vertices:,} were asked for"
-        + ("; {reason}" if reason else ""),
+        + ("" if record is None else "; {reason}"),
         n_vertices=reached,
         target_vertices=target_vertices,
-        reason=reason,
+        reason=None if record is None else str(record).rstrip("."),
     )
 
 

@@ -32,8 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=WHAT,
         default="energy",
         help="energy: root mean square detail around each vertex, one raster band per level "
-        "(default); component: what each level adds, signed; level: at which each vertex went; shape: slope, "
-        "aspect and curvatures of the surface of --level",
+        "(default); component: what each level adds, signed; level: at which each vertex went; "
+        "shape: slope, aspect and curvatures of the surface of --level",
     )
     parser.add_argument(
         "--level", type=int, metavar="K", help="of --what shape; by default the input itself"
