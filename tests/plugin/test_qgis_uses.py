@@ -290,7 +290,7 @@ def test_the_choices_are_served_by_the_core(qgis):
     from terrain_wavelets.plugin.parameters import mesh_output
 
     from wavelet_core import NORMS, PARTITIONS, PREDICTIONS, SIGNALS, UPDATES
-    from wavelet_gis.io.meshes import MESH_SUFFIXES
+    from wavelet_gis.io.formats import MESH_SUFFIXES
 
     assert set(design.PARTITIONS) == set(PARTITIONS)
     assert set(design.NORMS) == set(NORMS)

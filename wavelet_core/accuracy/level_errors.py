@@ -37,7 +37,9 @@ class LevelErrors(NamedTuple):
     n_uncovered: int
 
 
-def level_errors(pyramid: Pyramid, progress: Progress | None = None) -> list[LevelErrors]:
+def level_errors(
+    pyramid: Pyramid, progress: Progress | None = None, finest: TriangleMesh | None = None
+) -> list[LevelErrors]:
     """Return size and errors of every level, the coarsest first: ``rows[level]``.
 
     Parameters
@@ -46,13 +48,15 @@ def level_errors(pyramid: Pyramid, progress: Progress | None = None) -> list[Lev
         What is measured.
     progress : callable, optional
         Called with a fraction in [0, 1] after each level; the work stops when it returns False.
+    finest : TriangleMesh, optional
+        The pyramid's finest mesh, where it has been synthesised already.
 
     Raises
     ------
     Cancelled
         ``progress`` returned False.
     """
-    finest = pyramid.mesh(pyramid.n_levels)
+    finest = pyramid.synthesise() if finest is None else finest
     reference = _columns(finest)
     extent = reference.max(axis=0) - reference.min(axis=0)
     scale = np.where(extent > 0, extent, 1.0)

@@ -340,8 +340,13 @@ def _check_span(degrees: NDArray[np.float64]) -> None:
         raise CrsError("the extent is not finite; check the georeference of the input.")
     if max(abs(south), abs(north)) > 90.0 + 1e-6 or max(abs(west), abs(east)) > 540.0:
         raise CrsError(
-            f"the CRS is geographic but x runs from {west:g} to {east:g} and y from {south:g} to "
-            f"{north:g}, which are no degrees; give the right CRS with --crs."
+            "the CRS is geographic but x runs from {west:g} to {east:g} and y from {south:g} to "
+            "{north:g}, which are no degrees; give the right CRS with {0}.",
+            "crs",
+            west=west,
+            east=east,
+            south=south,
+            north=north,
         )
     distortion = _distortion(south, north)
     span = max(east - west, north - south)

@@ -37,9 +37,9 @@ from wavelet_gis.io.geopackage import (
     register_attributes_table,
     table_names,
 )
-from wavelet_gis.model.cloud_origin import PointSource
-from wavelet_gis.model.dem import RasterSource
-from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource, Source
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.origin import origin_from_parts
+from wavelet_gis.notes import Note
 
 __all__ = ["FORMAT_VERSION", "read_pyramid", "read_summary", "write_pyramid"]
 
@@ -174,11 +174,9 @@ def _to_parts(geo: GeoPyramid) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
     for level, step in enumerate(pyramid.steps):
         for name in _STEP_DTYPES:
             arrays[f"steps/{level:04d}/{name}"] = getattr(step, name)
-    source: dict[str, Any] = {"kind": geo.source.kind}
-    if not isinstance(geo.source, MeshSource):
-        source, source_arrays = geo.source.to_parts()
-        arrays.update(source_arrays)
-    metadata = {
+    source, source_arrays = geo.origin.to_parts()
+    arrays.update(source_arrays)
+    metadata: dict[str, Any] = {
         "format": {
             "name": _FORMAT,
             "version": FORMAT_VERSION,
@@ -201,6 +199,8 @@ def _to_parts(geo: GeoPyramid) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
         "source_name": os.path.basename(geo.source_name),
         "history": list(geo.history),
     }
+    if geo.notes:
+        metadata["notes"] = [note.to_dict() for note in geo.notes]
     return metadata, arrays
 
 
@@ -233,36 +233,24 @@ def _from_parts(
         locked=locked,
         parameters=dict(described["parameters"]),
     )
-    source = _source_from(metadata["source"], arrays)
-    if not isinstance(source, MeshSource):
-        n_vertices = pyramid.n_vertices(pyramid.n_levels)
-        if source.n_vertices != n_vertices:
-            raise PyramidError(
-                f"the source has {source.n_vertices} vertices, the pyramid {n_vertices}; analyse "
-                "the input anew."
-            )
+    origin = origin_from_parts(metadata["source"], arrays.all_named("source/"))
+    n_vertices = pyramid.n_vertices(pyramid.n_levels)
+    if origin.n_vertices not in (None, n_vertices):
+        raise PyramidError(
+            f"the source has {origin.n_vertices} vertices, the pyramid {n_vertices}; analyse "
+            "the input anew."
+        )
     return GeoPyramid(
         pyramid=pyramid,
         system=CoordinateSystem.from_dict(metadata["crs"]),
         frame=LocalFrame.from_dict(metadata["frame"]),
         vertical_unit=str(metadata["vertical_unit"]),
-        source=source,
+        origin=origin,
         source_name=str(metadata["source_name"]),
         errors=levels[::-1] if len(levels) == n_levels + 1 and _are_measured(levels) else None,
         history=tuple(str(line) for line in metadata["history"]),
+        notes=tuple(Note.from_dict(fields) for fields in metadata.get("notes", [])),
     )
-
-
-def _source_from(fields: dict[str, Any], arrays: _Arrays) -> Source:
-    kind = fields["kind"]
-    if kind == "tin":
-        return MeshSource()
-    if kind not in ("raster", "points"):
-        raise PyramidError(f"the file claims a source of kind {kind!r}; analyse the input anew.")
-    of_source = arrays.all_named("source/")
-    if kind == "raster":
-        return RasterSource.from_parts(fields, of_source)
-    return PointSource.from_parts(fields, of_source)
 
 
 # -- tables --------------------------------------------------------------------------------------

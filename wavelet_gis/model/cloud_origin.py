@@ -18,11 +18,11 @@ from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
 
-__all__ = ["PointSource", "cloud_mesh"]
+__all__ = ["CloudOrigin", "cloud_mesh"]
 
 
 @dataclass(frozen=True, slots=True)
-class PointSource:
+class CloudOrigin:
     """How a pyramid's finest mesh becomes the points it was made from.
 
     Attributes
@@ -57,6 +57,8 @@ class PointSource:
     checksum: str
 
     kind = "points"
+    noun = "point cloud"
+    grid = None
 
     @classmethod
     def from_cloud(
@@ -64,8 +66,8 @@ class PointSource:
         cloud: PointCloud,
         kept: NDArray[np.int64],
         representative: NDArray[np.int64],
-    ) -> PointSource:
-        """Return the source of a cloud, before there is a pyramid (and so without corrections).
+    ) -> CloudOrigin:
+        """Return the origin of a cloud, before there is a pyramid (and so without corrections).
 
         Parameters
         ----------
@@ -92,8 +94,8 @@ class PointSource:
 
     def with_corrections(
         self, cloud: PointCloud, mesh: TriangleMesh, frame: LocalFrame
-    ) -> PointSource:
-        """Return the source that gives `cloud` back exactly from the synthesised `mesh`."""
+    ) -> CloudOrigin:
+        """Return the origin that gives `cloud` back exactly from the synthesised `mesh`."""
         kept = self._kept()
         columns = tuple(
             exact_column(original[kept], approximate)
@@ -103,14 +105,19 @@ class PointSource:
         )
         return replace(self, corrections=columns)
 
-    def altered(self) -> PointSource:
-        """Return the source for a pyramid whose coefficients have been changed."""
+    def altered(self) -> CloudOrigin:
+        """Return the origin for a pyramid whose coefficients have been changed."""
         return replace(self, corrections=None)
 
     @property
     def is_exact(self) -> bool:
         """Whether the original comes back bit for bit."""
         return self.corrections is not None
+
+    @property
+    def points(self) -> CloudOrigin:
+        """The points themselves."""
+        return self
 
     @property
     def n_vertices(self) -> int:
@@ -123,7 +130,7 @@ class PointSource:
         Raises
         ------
         PyramidError
-            When the mesh does not have the vertices of the source, or the exact original was
+            When the mesh does not have the vertices of the origin, or the exact original was
             due and the result's checksum is another.
         """
         if mesh.n_vertices != self.n_vertices or mesh.attributes.shape[1] != len(
@@ -229,8 +236,8 @@ class PointSource:
         return fields, arrays
 
     @classmethod
-    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> PointSource:
-        """Return the source that `to_parts` described, every claim checked.
+    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CloudOrigin:
+        """Return the origin that `to_parts` described, every claim checked.
 
         Raises
         ------
@@ -247,7 +254,7 @@ class PointSource:
             ) from error
 
     @classmethod
-    def _from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> PointSource:
+    def _from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CloudOrigin:
         n_points = int(fields["n_points"])
         attributes = tuple(_attribute(described) for described in fields["attributes"])
         cloud = PointCloud(
@@ -269,7 +276,7 @@ class PointSource:
                 ExactColumn.from_parts(f"source/ledger_{k}", column, arrays)
                 for k, column in enumerate(fields["ledger"])
             )
-        source = cls(
+        origin = cls(
             cloud=cloud,
             n_points=n_points,
             dropped=arrays["source/dropped"],
@@ -281,8 +288,8 @@ class PointSource:
             corrections=corrections,
             checksum=str(fields["checksum"]),
         )
-        source._check()
-        return source
+        origin._check()
+        return origin
 
     def _check(self) -> None:
         cloud, n_dropped = self.cloud, len(self.dropped)
@@ -312,11 +319,14 @@ class PointSource:
             _require(block.ndim == 1 and block.dtype == np.uint8, "header")
         if self.corrections is not None:
             dtypes = [np.dtype(np.int32)] * 3 + [a.values.dtype for a in cloud.attributes]
-            _require(len(self.corrections) == n_columns, "ledger")
-            _require([column.dtype for column in self.corrections] == dtypes, "ledger's data types")
+            _require(len(self.corrections) == n_columns, "corrections")
+            _require(
+                [column.dtype for column in self.corrections] == dtypes,
+                "data types of the corrections",
+            )
 
 
-def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, PointSource]:
+def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, CloudOrigin]:
     """Return the Delaunay TIN of the points in the working frame, and how to come back from it.
 
     Parameters
@@ -340,20 +350,21 @@ def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, Poin
             "in its header."
         )
     merged = merge_duplicates(vertices)
-    source = PointSource.from_cloud(cloud, merged.kept, merged.representative)
+    origin = CloudOrigin.from_cloud(cloud, merged.kept, merged.representative)
     kept = merged.kept
     attributes = np.empty((len(kept), len(cloud.attributes)))
     for k, attribute in enumerate(cloud.attributes):
         attributes[:, k] = attribute.lifted()[kept]
         if not np.isfinite(attributes[:, k]).all():
             raise InputFileError(
-                f"attribute {attribute.name} has values that are no finite numbers; "
-                "leave it out of --attributes."
+                "attribute {attribute} has values that are no finite numbers; leave it out of {0}.",
+                "attributes",
+                attribute=attribute.name,
             )
     names = tuple(attribute.name for attribute in cloud.attributes)
     vertices = vertices[kept]
     faces = delaunay_faces(vertices[:, :2])
-    return TriangleMesh(vertices, faces, attributes, names), source
+    return TriangleMesh(vertices, faces, attributes, names), origin
 
 
 def _emptied(cloud: PointCloud) -> PointCloud:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
 
-__all__ = ["Dem", "GridGeometry", "RasterSource", "dem_mesh", "grid_bounds"]
+__all__ = ["Dem", "GridGeometry", "InputGrid", "RasterOrigin", "dem_mesh", "grid_bounds"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +99,23 @@ class Dem:
         return values
 
 
+class InputGrid(NamedTuple):
+    """The grid that a pyramid was made from, each of whose cells with data is a vertex.
+
+    geometry : GridGeometry
+    valid : (n_rows, n_columns) bool, the cells with data; the i-th of them is vertex i
+    dtype : numpy dtype of the stored numbers
+    nodata : int, float or None
+    """
+
+    geometry: GridGeometry
+    valid: NDArray[np.bool_]
+    dtype: np.dtype[Any]
+    nodata: float | int | None
+
+
 @dataclass(frozen=True, slots=True)
-class RasterSource:
+class RasterOrigin:
     """How a pyramid's finest mesh becomes the DEM it was made from.
 
     Attributes
@@ -129,10 +144,12 @@ class RasterSource:
     checksum: str
 
     kind = "raster"
+    noun = "raster"
+    points = None
 
     @classmethod
-    def from_dem(cls, dem: Dem) -> RasterSource:
-        """Return the source of a DEM, before there is a pyramid (and so without corrections)."""
+    def from_dem(cls, dem: Dem) -> RasterOrigin:
+        """Return the origin of a DEM, before there is a pyramid (and so without corrections)."""
         return cls(
             geometry=dem.geometry,
             nodata=dem.nodata,
@@ -146,13 +163,13 @@ class RasterSource:
             checksum=checksum([dem.values]),
         )
 
-    def with_corrections(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterSource:
-        """Return the source that gives `dem` back exactly from the synthesised `mesh`."""
+    def with_corrections(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterOrigin:
+        """Return the origin that gives `dem` back exactly from the synthesised `mesh`."""
         approximate = self._values(mesh, frame)
         return replace(self, corrections=exact_column(dem.values[dem.valid], approximate))
 
-    def altered(self) -> RasterSource:
-        """Return the source for a pyramid whose coefficients have been changed."""
+    def altered(self) -> RasterOrigin:
+        """Return the origin for a pyramid whose coefficients have been changed."""
         return replace(self, corrections=None)
 
     @property
@@ -164,6 +181,11 @@ class RasterSource:
     def n_vertices(self) -> int:
         """Number of valid cells."""
         return int(np.count_nonzero(self.valid))
+
+    @property
+    def grid(self) -> InputGrid:
+        """The grid that came in."""
+        return InputGrid(self.geometry, self.valid, self.dtype, self.nodata)
 
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> Dem:
         """Return the DEM of the finest mesh of a pyramid.
@@ -226,8 +248,8 @@ class RasterSource:
         return fields, arrays
 
     @classmethod
-    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> RasterSource:
-        """Return the source that `to_parts` described, every claim checked.
+    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> RasterOrigin:
+        """Return the origin that `to_parts` described, every claim checked.
 
         Raises
         ------
@@ -268,7 +290,9 @@ class RasterSource:
         if "ledger" in fields:
             corrections = ExactColumn.from_parts("source/ledger", fields["ledger"], arrays)
             if corrections.dtype != dtype:
-                raise PyramidError("the raster's ledger has another data type; analyse it anew.")
+                raise PyramidError(
+                    "the raster's corrections have another data type; analyse it anew."
+                )
         geometry = GridGeometry((n_rows, n_columns), transform)  # type: ignore[arg-type]
         return cls(
             geometry, nodata, scale, offset, profile, dtype, valid, holes, corrections, digest
@@ -292,8 +316,7 @@ def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
     """
     if not dem.valid.any():
         raise InputFileError(
-            "every cell of the raster is nodata, so there is no terrain in it; "
-            "check the band and the nodata value."
+            "every cell of the raster is nodata; check the band and the nodata value."
         )
     n_rows, n_columns = dem.geometry.shape
     elevation = np.zeros(dem.geometry.shape)

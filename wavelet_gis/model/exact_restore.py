@@ -70,7 +70,7 @@ class ExactColumn:
         n = len(approximate)
         if self.remainder is not None and len(self.remainder) != n:
             raise PyramidError(
-                f"the ledger holds {len(self.remainder)} remainders for {n} values; "
+                f"there are {len(self.remainder)} remainders for {n} values; "
                 "the file is damaged, write it anew."
             )
         restored = _on_grid(approximate, self.quantum, self.remainder)
@@ -78,7 +78,7 @@ class ExactColumn:
         if len(self.exception_rows):
             if self.exception_rows.min() < 0 or self.exception_rows.max() >= n:
                 raise PyramidError(
-                    f"the ledger names a row beyond the {n} there are; "
+                    f"the corrections name a row beyond the {n} there are; "
                     "the file is damaged, write it anew."
                 )
             column[self.exception_rows] = self.exception_values
@@ -109,7 +109,7 @@ class ExactColumn:
             dtype, quantum = _number_dtype(fields["dtype"]), float(fields["quantum"])
         except (KeyError, TypeError, ValueError) as error:
             raise PyramidError(
-                f"the ledger of {name} is damaged ({error}); write the file anew."
+                f"the correction {name} is damaged ({error}); write the file anew."
             ) from error
         remainder = arrays.get(f"{name}/remainder")
         rows = arrays.get(f"{name}/exception_rows", np.empty(0, np.int64))
@@ -124,7 +124,7 @@ class ExactColumn:
             and len(rows) == len(values)
         )
         if not sound:
-            raise PyramidError(f"the ledger of {name} is damaged; write the file anew.")
+            raise PyramidError(f"the correction {name} is damaged; write the file anew.")
         return cls(dtype, quantum, remainder, rows, values)
 
 

@@ -101,6 +101,7 @@ def report_data(
         "shown": [_error_figures(geo, finest, level, errors[level]) for level in chosen],
         "parameters": dict(pyramid.parameters),
         "history": list(geo.history),
+        "notes": [note.to_dict() for note in geo.notes],
         "versions": _versions(),
     }
     return ReportData(figures, shown, {level: errors[level] for level in chosen})
@@ -266,8 +267,8 @@ def _source_figures(geo: GeoPyramid, finest: TriangleMesh) -> dict[str, Any]:
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     return {
         "name": geo.source_name.replace("\\", "/").rsplit("/", 1)[-1],
-        "kind": geo.source.kind,
-        "is_exact": bool(geo.source.is_exact),
+        "kind": geo.origin.kind,
+        "is_exact": bool(geo.origin.is_exact),
         "n_vertices": finest.n_vertices,
         "n_faces": finest.n_faces,
         "n_levels": geo.pyramid.n_levels,
