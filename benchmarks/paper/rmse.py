@@ -44,8 +44,8 @@ def run(sample: Sample, pictures: Path) -> dict[str, Any]:
             flush=True,
         )
     fixed = level_errors(analyse(sample.mesh, LEVELS, "quadric", "GLMN", signal="z"))
-    draw_errors(sample, designs, pictures / f"paper-rmse-{sample.name}.png")
-    draw_levels(sample, pictures / f"paper-levels-{sample.name}.png")
+    draw_errors(sample, designs, pictures / f"rmse-{sample.name}.png")
+    draw_levels(sample, pictures / f"levels-{sample.name}.png")
     return {
         "figure": sample.figure,
         "note": sample.note,
