@@ -1,0 +1,77 @@
+"""Pyramid files opened up by tests: their checksums taken out, or made to fit what was changed."""
+
+import json
+import sqlite3
+
+from wavelet_core.errors import WaveletError
+from wavelet_gis.io import pyramid_file
+from wavelet_gis.io.array_codec import array_checksum, decode_array
+from wavelet_gis.io.array_tables import read_entries
+
+
+def operate(path, *statements):
+    """Run SQL on a file; a statement may be a tuple of SQL and its parameters."""
+    connection = sqlite3.connect(path)
+    try:
+        with connection:
+            for statement in statements:
+                sql, *parameters = statement if isinstance(statement, tuple) else (statement,)
+                connection.execute(sql, parameters)
+    finally:
+        connection.close()
+
+
+#: Make of a file one as it was written before there were checksums.
+STRIP = (
+    "DELETE FROM wavelet_metadata WHERE name = 'checksums'",
+    "UPDATE wavelet_metadata SET value = json_remove(value, '$.checksums') WHERE name = 'format'",
+    "ALTER TABLE wavelet_arrays DROP COLUMN checksum",
+)
+
+
+def reseal(path):
+    """Write the checksums that fit what is in the file now, as somebody with bad intent would.
+
+    What cannot be read has no checksum, and keeps the one it had.
+    """
+    connection = sqlite3.connect(path)
+    try:
+        with connection:
+            _reseal(connection)
+    finally:
+        connection.close()
+
+
+def _reseal(connection):
+    try:
+        pyramid_file._require_tables(connection)  # an endless view would keep us, too
+        entries = read_entries(connection, with_checksums=True)
+    except (WaveletError, sqlite3.Error):
+        return
+    for name, entry in list(entries.items()):
+        chunks = connection.execute(
+            "SELECT data FROM wavelet_chunks WHERE array_id = ? ORDER BY sequence",
+            (entry.array_id,),
+        ).fetchall()
+        try:
+            blobs = [data for (data,) in chunks]
+            array = decode_array(entry.header, blobs, sum(map(len, blobs)))
+        except (WaveletError, TypeError):
+            continue
+        checksum = array_checksum(entry.header, [array])
+        entries[name] = entry._replace(checksum=checksum)
+        connection.execute(
+            "UPDATE wavelet_arrays SET checksum = ? WHERE id = ?", (checksum, entry.array_id)
+        )
+    rows = connection.execute("SELECT name, value FROM wavelet_metadata").fetchall()
+    texts = {name: value for name, value in rows if name != "checksums"}
+    if not all(isinstance(text, str) for item in texts.items() for text in item):
+        return
+    try:
+        levels = pyramid_file._read_levels(connection)
+    except WaveletError:
+        return
+    checksums = pyramid_file._checksums(texts, levels, entries)
+    connection.execute(
+        "UPDATE wavelet_metadata SET value = ? WHERE name = 'checksums'", (json.dumps(checksums),)
+    )
