@@ -15,7 +15,6 @@ import hashlib
 import json
 import random
 import shutil
-import sqlite3
 import sys
 import tempfile
 import time
@@ -32,11 +31,12 @@ if __name__ in ("__main__", "__mp_main__"):
     sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "tools")]
 
 from tools._limits import Trials  # noqa: E402
-from tools.pyramid_surgery import STRIP, operate, reseal  # noqa: E402
+from tools.pyramid_surgery import STRIP, opened, operate, reseal  # noqa: E402
 
 from wavelet_core.errors import WaveletError  # noqa: E402
 from wavelet_gis.io.array_codec import encode_array, header_of  # noqa: E402
 from wavelet_gis.io.pyramid_file import (  # noqa: E402
+    _require_tables,
     _to_parts,
     read_pyramid,
     read_summary,
@@ -131,8 +131,9 @@ def _json(path, rng):
     table, name, column = rng.choice(
         (("wavelet_metadata", "name", "value"),) * 3 + (("wavelet_arrays", "name", "shape"),)
     )
-    connection = sqlite3.connect(path)
-    rows = connection.execute(f"SELECT {name}, {column} FROM {table}").fetchall()
+    with opened(path) as connection:
+        _require_tables(connection)
+        rows = connection.execute(f"SELECT {name}, {column} FROM {table}").fetchall()
     key, text = rng.choice(rows)
     value = json.loads(text)
     places = [place for place in _places(value, ()) if place]
@@ -146,9 +147,7 @@ def _json(path, rng):
         text = json.dumps(value).replace('"@here@"', replacement)
     else:
         text = replacement
-    with connection:
-        connection.execute(f"UPDATE {table} SET {column} = ? WHERE {name} = ?", (text, key))
-    connection.close()
+    operate(path, (f"UPDATE {table} SET {column} = ? WHERE {name} = ?", text, key))
     return f"{key} {'.'.join(map(str, place))} {replacement[:20]}"
 
 
@@ -173,7 +172,12 @@ def _parent(value, place):
 
 def _array(path, rng):
     """Change numbers of an array, or put another of some shape and type in its place."""
-    connection = sqlite3.connect(path)
+    with opened(path) as connection:
+        _require_tables(connection)
+        return _array_in(connection, rng)
+
+
+def _array_in(connection, rng):
     rows = connection.execute("SELECT id, name FROM wavelet_arrays").fetchall()
     array_id, name = rng.choice(rows)
     generator = np.random.default_rng(rng.randrange(2**32))
@@ -190,21 +194,18 @@ def _array(path, rng):
     elif kind == "same":
         array = _changed(connection, array_id, generator)
     header = header_of(array)
-    with connection:
-        connection.execute("DELETE FROM wavelet_chunks WHERE array_id = ?", (array_id,))
-        connection.execute(
-            "UPDATE wavelet_arrays SET dtype = ?, shape = ?, filter = ?, chunk_rows = ? "
-            "WHERE id = ?",
-            (header.dtype, json.dumps(header.shape), header.filter, header.chunk_rows, array_id),
-        )
-        chunks = list(encode_array(array))
-        if kind == "bomb" and rng.random() < 0.3:
-            chunks = [zlib.compress(bytes(50_000_000))]
-        connection.executemany(
-            "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES (?,?,?)",
-            ((array_id, k, chunk) for k, chunk in enumerate(chunks)),
-        )
-    connection.close()
+    connection.execute("DELETE FROM wavelet_chunks WHERE array_id = ?", (array_id,))
+    connection.execute(
+        "UPDATE wavelet_arrays SET dtype = ?, shape = ?, filter = ?, chunk_rows = ? WHERE id = ?",
+        (header.dtype, json.dumps(header.shape), header.filter, header.chunk_rows, array_id),
+    )
+    chunks = list(encode_array(array))
+    if kind == "bomb" and rng.random() < 0.3:
+        chunks = [zlib.compress(bytes(50_000_000))]
+    connection.executemany(
+        "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES (?,?,?)",
+        ((array_id, k, chunk) for k, chunk in enumerate(chunks)),
+    )
     return f"{name} {kind} {array.dtype} {array.shape}"
 
 
@@ -326,7 +327,8 @@ def main():
     parser.add_argument("--keep", type=Path, help="folder for the files that were not refused well")
     arguments = parser.parse_args()
     counts, worst, started = Counter(), 0.0, time.monotonic()
-    with tempfile.TemporaryDirectory() as name, Trials(read, WaveletError) as trials:
+    memory = "/dev/shm" if Path("/dev/shm").is_dir() else None  # many small files
+    with tempfile.TemporaryDirectory(dir=memory) as name, Trials(read, WaveletError) as trials:
         folder = Path(name)
         sources = list(samples(folder))
         for k in range(arguments.seed, arguments.seed + arguments.count):

@@ -1,7 +1,9 @@
 """Pyramid files opened up by tests: their checksums taken out, or made to fit what was changed."""
 
+import itertools
 import json
 import sqlite3
+from contextlib import contextmanager
 
 from wavelet_core.errors import WaveletError
 from wavelet_gis.io import pyramid_file
@@ -9,16 +11,27 @@ from wavelet_gis.io.array_codec import array_checksum, decode_array
 from wavelet_gis.io.array_tables import read_entries
 
 
-def operate(path, *statements):
-    """Run SQL on a file; a statement may be a tuple of SQL and its parameters."""
+@contextmanager
+def opened(path):
+    """Yield a connection, bounded as what it does to a damaged file may have no end."""
     connection = sqlite3.connect(path)
+    looks = itertools.count()
+    connection.set_progress_handler(lambda: next(looks) > 300, 10_000)
+    connection.execute("PRAGMA synchronous = OFF")
+    connection.execute("PRAGMA max_page_count = 50000")
     try:
         with connection:
-            for statement in statements:
-                sql, *parameters = statement if isinstance(statement, tuple) else (statement,)
-                connection.execute(sql, parameters)
+            yield connection
     finally:
         connection.close()
+
+
+def operate(path, *statements):
+    """Run SQL on a file; a statement may be a tuple of SQL and its parameters."""
+    with opened(path) as connection:
+        for statement in statements:
+            sql, *parameters = statement if isinstance(statement, tuple) else (statement,)
+            connection.execute(sql, parameters)
 
 
 #: Make of a file one as it was written before there were checksums.
@@ -34,12 +47,8 @@ def reseal(path):
 
     What cannot be read has no checksum, and keeps the one it had.
     """
-    connection = sqlite3.connect(path)
-    try:
-        with connection:
-            _reseal(connection)
-    finally:
-        connection.close()
+    with opened(path) as connection:
+        _reseal(connection)
 
 
 def _reseal(connection):

@@ -40,7 +40,10 @@ MAX_SQL_BYTES = 1 << 20
 #: Instructions of SQLite's virtual machine for one file, in all. A pyramid of a hundred million
 #: points takes some hundred thousand; a statement that never ends is ended.
 MAX_INSTRUCTIONS = 50_000_000
-_INSTRUCTIONS_BETWEEN_LOOKS = 100_000
+
+#: The same for reading the schema, some eight steps a table; ours have a few hundred. SQLite 3.40
+#: takes minutes to read one of 300,000 tables, in a file of 16 MB.
+MAX_SCHEMA_INSTRUCTIONS = 200_000
 
 #: Seconds to wait for another program that writes the file just now.
 PATIENCE_SECONDS = 2.0
@@ -143,7 +146,10 @@ def open_for_writing(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connectio
         finally:
             connection.close()
     except sqlite3.Error as error:
-        words = _system_fault(error) or f"SQLite refuses to write it ({error}); please report this"
+        words = (
+            _system_fault(error)
+            or f"SQLite refuses to write it ({_short(error)}); please report this"
+        )
         raise OutputFileError(f"{name}: {words}.") from error
 
 
@@ -178,8 +184,10 @@ def open_stranger(
     try:
         connection = sqlite3.connect(uri, uri=True, timeout=PATIENCE_SECONDS)
         try:
-            _guard(connection, max_instructions)
+            _guard(connection)
+            _bound(connection, MAX_SCHEMA_INSTRUCTIONS, looks_every=1000)
             connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
+            _bound(connection, max_instructions, looks_every=100_000)
             yield connection
         finally:
             connection.close()
@@ -188,7 +196,7 @@ def open_stranger(
         raise InputFileError(f"{name}: {_reading_fault(name, error)}.") from error
 
 
-def _guard(connection: sqlite3.Connection, max_instructions: int | None) -> None:
+def _guard(connection: sqlite3.Connection) -> None:
     """Bound what a stranger's file can make SQLite do."""
     # Views, triggers and functions in the schema of a stranger must not run.
     connection.execute("PRAGMA trusted_schema = OFF")
@@ -198,11 +206,17 @@ def _guard(connection: sqlite3.Connection, max_instructions: int | None) -> None
     connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_VALUE_BYTES)
     connection.setlimit(sqlite3.SQLITE_LIMIT_SQL_LENGTH, MAX_SQL_BYTES)
     connection.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
+
+
+def _bound(
+    connection: sqlite3.Connection, max_instructions: int | None, *, looks_every: int
+) -> None:
+    """End a statement after so many more steps of SQLite's virtual machine."""
     if max_instructions is None:
+        connection.set_progress_handler(None, 0)
         return
-    looks = itertools.count(1)
-    most = max_instructions // _INSTRUCTIONS_BETWEEN_LOOKS
-    connection.set_progress_handler(lambda: next(looks) > most, _INSTRUCTIONS_BETWEEN_LOOKS)
+    looks, most = itertools.count(1), max_instructions // looks_every
+    connection.set_progress_handler(lambda: next(looks) > most, looks_every)
 
 
 def _system_fault(error: Exception) -> str | None:
@@ -211,7 +225,13 @@ def _system_fault(error: Exception) -> str | None:
     if code in ("SQLITE_IOERR_SHORT_READ", "SQLITE_IOERR_CORRUPTFS"):
         return None
     word = code.split("_")[1]
-    return f"{_FAULTS[word]} ({error}); {_REMEDIES[word]}" if word in _FAULTS else None
+    return f"{_FAULTS[word]} ({_short(error)}); {_REMEDIES[word]}" if word in _FAULTS else None
+
+
+def _short(error: Exception) -> str:
+    """Return SQLite's words in one line; it may quote a damaged schema at length."""
+    words = " ".join(str(error).split())
+    return words if len(words) <= 120 else f"{words[:117]}..."
 
 
 def _reading_fault(name: str, error: Exception) -> str:
@@ -224,11 +244,11 @@ def _reading_fault(name: str, error: Exception) -> str:
         )
     if os.path.exists(f"{name}-wal"):
         return (
-            f"this is no GeoPackage, or a damaged one ({error}); {name}-wal lies beside it, and "
-            "if that is left over from an older file of this name, remove it"
+            f"this is no GeoPackage, or a damaged one ({_short(error)}); {name}-wal lies beside "
+            "it, and if that is left over from an older file of this name, remove it"
         )
     return (
-        f"this is no GeoPackage, or a damaged one ({error}); give a pyramid file that "
+        f"this is no GeoPackage, or a damaged one ({_short(error)}); give a pyramid file that "
         "'terrain-wavelets analyse' wrote"
     )
 

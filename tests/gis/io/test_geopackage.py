@@ -166,3 +166,20 @@ def test_layers_are_dated_alike_whatever_else_the_process_writes(
             dates = set(connection.execute("SELECT last_change FROM gpkg_contents"))
         assert dates == {("2023-11-14T22:13:20.000Z",)}
     assert (tmp_path / "a.gpkg").read_bytes() == (tmp_path / "b1.gpkg").read_bytes()
+
+
+def test_a_schema_of_very_many_tables(tmp_path):
+    create_geopackage(tmp_path / "a.gpkg")
+    connection = sqlite3.connect(tmp_path / "a.gpkg")
+    connection.execute("PRAGMA writable_schema = ON")
+    connection.execute(
+        "INSERT INTO sqlite_master SELECT 'table', 't' || i, 't' || i, 2, "
+        "'CREATE TABLE t' || i || '(a)' FROM (WITH RECURSIVE n(i) AS "
+        "(SELECT 0 UNION ALL SELECT i + 1 FROM n LIMIT 300000) SELECT i FROM n)"
+    )
+    connection.commit()
+    connection.close()
+    started = time.monotonic()
+    with pytest.raises(InputFileError, match="more work than any pyramid file needs"):
+        read_summary(tmp_path / "a.gpkg")
+    assert time.monotonic() - started < 10

