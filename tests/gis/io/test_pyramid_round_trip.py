@@ -1,14 +1,15 @@
 """Any pyramid that is written is read back equal: every option of the analysis, every source."""
 
 import tempfile
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import laspy
 import numpy as np
 from gis.samples import write_tif
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+from pyproj import CRS
 
 from wavelet_core import TriangleMesh, analyse
 from wavelet_core.synthetic import hills
@@ -79,7 +80,8 @@ def assert_read_back(geo):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "a.gpkg"
         write_pyramid(path, geo)
-        assert_equal(read_pyramid(path), geo)
+        # Where the input lay is nobody's business but the writer's.
+        assert_equal(read_pyramid(path), replace(geo, source_name=Path(geo.source_name).name))
 
 
 @SETTINGS
@@ -124,6 +126,7 @@ def test_rasters(shape, dtype, holes, levels, with_errors, is_altered, seed):
     with tempfile.TemporaryDirectory() as folder:
         terrain = open_terrain(write_tif(Path(folder) / "a.tif", values, nodata=0))
     pyramid = analyse(terrain.mesh, levels=levels)
+    assume(all(step.n_odd for step in pyramid.steps))  # the partition's matter
     geo = terrain.geo_pyramid(pyramid)
     if is_altered:
         geo = geo.with_pyramid(pyramid.with_parts(coarse=pyramid.coarse + 1), "raised")
@@ -144,6 +147,7 @@ def test_clouds(n_points, version, attributes, levels, seed):
     rng = np.random.default_rng(seed)
     header = laspy.LasHeader(version=version[0], point_format=version[1])
     header.scales, header.offsets = [0.01, 0.01, 0.001], [500000.0, 5100000.0, 100.0]
+    header.add_crs(CRS.from_epsg(32632))
     las = laspy.LasData(header)
     corners = np.array([[0, 0], [20, 0], [0, 20], [20, 20]], float)
     xy = np.vstack([corners, rng.integers(0, 20, (n_points, 2))])  # many share x and y
