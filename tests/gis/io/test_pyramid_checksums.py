@@ -35,7 +35,7 @@ def with_one_bit_changed(path, name):
     connection = sqlite3.connect(path)
     entry = read_entries(connection, with_checksums=True)[name]
     arrays = StoredArrays(connection, None, {name: entry}, os.path.getsize(path))
-    array = arrays.get(name)
+    array = arrays.get(name).copy()
     if array.size == 0:
         return False
     raw = array.reshape(-1).view(np.uint8)

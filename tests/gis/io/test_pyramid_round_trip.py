@@ -60,6 +60,8 @@ def assert_equal(a, b, where="pyramid"):
         assert a.dtype.newbyteorder("<") == b.dtype.newbyteorder("<"), where
         assert a.shape == b.shape, where
         assert a.astype(b.dtype).tobytes() == b.tobytes(), where
+    elif isinstance(a, np.dtype):
+        assert a == b, where  # '<i2' and 'int16' are the same
     elif hasattr(a, "__dataclass_fields__"):
         assert type(a) is type(b), where
         for field in fields(a):
