@@ -34,6 +34,7 @@ ROOMS = {
     ),
     "wavelet_gis": (
         "errors",
+        "_fields",
         "_program",
         "progress",
         "notes",
