@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from .._validate import frozen
 from ..errors import OptionError
 from ..lifting.linear_map import Transform
