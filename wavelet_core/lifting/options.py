@@ -9,18 +9,18 @@ from typing import Any
 import numpy as np
 
 from ..errors import OptionError
+from ..partition.error_guided import REMOVAL_FRACTION
 from .prediction import PREDICTIONS
 from .update import UPDATES
 
 PARTITIONS = ("surface", "quadric", "colouring", "random")
 #: By what a surface-guided partition judges a removal.
 NORMS = ("rms", "max")
-#: Share of the vertices that a surface-guided level may take, at most.
-REMOVAL_FRACTION = 0.25
 #: The same for the largest error at a given size, which smaller steps keep lower: 5 % on five DEMs.
 MAX_NORM_REMOVAL_FRACTION = 0.1
 SIGNALS = ("z", "xyz")
-#: Levels when neither a number nor a stop rule is given: the paper's experiments use 12.
+#: Levels with the paper's partition when neither a number nor a stop rule is given: its
+#: experiments use 12.
 DEFAULT_LEVELS = 12
 #: More levels than any input needs; the analysis stops by itself when nothing can be removed.
 MAX_LEVELS = 1000
@@ -30,7 +30,7 @@ MAX_LEVELS = 1000
 class AnalysisOptions:
     """The options of :func:`wavelet_core.analyse`, resolved and checked."""
 
-    levels: int
+    levels: int | None
     partition: str
     prediction: str
     update: str
@@ -43,6 +43,7 @@ class AnalysisOptions:
     seed: int
     norm: str
     removal_fraction: float
+    outline_tolerance: float
 
     def as_dict(self) -> dict[str, Any]:
         """Return the options as plain numbers, strings and lists."""
@@ -85,6 +86,7 @@ def resolve_options(
     seed: int,
     norm: str | None,
     removal_fraction: float | None,
+    outline_tolerance: float,
 ) -> AnalysisOptions:
     """Return the options with defaults filled in and short names spelled out.
 
@@ -94,9 +96,9 @@ def resolve_options(
         A value that is not served.
     """
     has_stop_rule = any(rule is not None for rule in (target_vertices, max_error, max_rms))
-    if levels is None:
-        levels = MAX_LEVELS if has_stop_rule else DEFAULT_LEVELS
-    if not 0 <= levels <= MAX_LEVELS:
+    if levels is None and has_stop_rule:
+        levels = MAX_LEVELS
+    if levels is not None and not 0 <= levels <= MAX_LEVELS:
         raise OptionError(f"levels is {levels}; give 0 to {MAX_LEVELS}.")
     if target_vertices is not None and target_vertices < 3:
         raise OptionError(f"target_vertices is {target_vertices}; a mesh has at least 3.")
@@ -128,8 +130,24 @@ def resolve_options(
     if update is None:
         update = "none" if is_surface and norm == "max" else "minimum_norm"
     prediction, update = parse_design(prediction, update)
+    if not (np.isfinite(outline_tolerance) and outline_tolerance >= 0):
+        raise OptionError(
+            f"outline_tolerance is {outline_tolerance}; give a distance of 0 or more in the unit "
+            "of x and y."
+        )
+    keeps_errors = (
+        is_surface and prediction == "barycentric" and update in ("minimum_norm", "none")
+    ) and signal == "z"
+    if outline_tolerance > 0 and not keeps_errors:
+        raise OptionError(
+            f"outline_tolerance is {outline_tolerance} with partition {partition!r}, prediction "
+            f"{prediction!r}, update {update!r} and signal {signal!r}; it needs 'surface', "
+            "'barycentric', 'minimum_norm' or 'none', and 'z'."
+        )
+    if levels is None and not keeps_errors:
+        levels = DEFAULT_LEVELS
     return AnalysisOptions(
-        levels=int(levels),
+        levels=None if levels is None else int(levels),
         partition=_one_of(partition, PARTITIONS, "partition"),
         prediction=prediction,
         update=update,
@@ -142,6 +160,7 @@ def resolve_options(
         seed=int(seed),
         norm=_one_of(norm, NORMS, "norm"),
         removal_fraction=float(removal_fraction),
+        outline_tolerance=float(outline_tolerance),
     )
 
 

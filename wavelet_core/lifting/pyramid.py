@@ -13,6 +13,7 @@ from .._validate import FloatArray, IntArray, frozen
 from ..errors import PyramidError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
+from ..partition.stopping import StopRecord
 from ._checks import check_parts
 from .step import FilterPair, Step, split_integrals, synthesise_level
 from .update import update_filter
@@ -62,6 +63,8 @@ class Pyramid:
     locked : ndarray of bool, shape (n_vertices,), or None
     parameters : dict
         Every option of the analysis, resolved.
+    stop : StopRecord or None
+        Why the analysis ended; None for a pyramid that comes from elsewhere.
     """
 
     faces: NDArray[np.int32]
@@ -73,6 +76,7 @@ class Pyramid:
     update: str
     locked: NDArray[np.bool_] | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    stop: StopRecord | None = None
 
     @classmethod
     def from_parts(
