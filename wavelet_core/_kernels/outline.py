@@ -67,22 +67,20 @@ def is_straight(px, py, qx, qy):
 # Does a new edge from p to q cut the origin off?
 @inlined
 def cuts_off(px, py, qx, qy, squared_tolerance):
-    return (
-        squared_tolerance > 0.0
-        and px * qy - py * qx > 0.0
-        and not is_straight(px, py, qx, qy)
-    )
+    return squared_tolerance > 0.0 and px * qy - py * qx > 0.0 and not is_straight(px, py, qx, qy)
 
 
 # What becomes of the outline where its vertex v goes, and where CUTS the share of the new edge at
-# which v is then judged. ring (size,) int32 and ring_xy (size, 2), from v, as of walk_ring.
+# which v is then judged. ring (size,) int32 and ring_x, ring_y (size,), from v, as of walk_ring.
 @inlined
-def outline_rule(v, size, ring, ring_xy, outline):
-    px, py, qx, qy = ring_xy[0, 0], ring_xy[0, 1], ring_xy[size - 1, 0], ring_xy[size - 1, 1]
+def outline_rule(v, size, ring, ring_x, ring_y, outline):
+    px, py, qx, qy = ring_x[0], ring_y[0], ring_x[size - 1], ring_y[size - 1]
     runs_straight = is_straight(px, py, qx, qy)
     if outline.squared_tolerance <= 0.0:
         return (STRAIGHT if runs_straight else STAYS), 0.0
-    if not keeps_tolerance(outline.ids[v], outline.ids[ring[0]], outline.ids[ring[size - 1]], outline):
+    if not keeps_tolerance(
+        outline.ids[v], outline.ids[ring[0]], outline.ids[ring[size - 1]], outline
+    ):
         return STAYS, 0.0
     if runs_straight:
         return STRAIGHT, 0.0
@@ -131,9 +129,13 @@ def is_clear(v, p, q, outline):
             if u in (v, p, q) or not outline.lives[u]:
                 continue
             if (
-                is_left_of(x, y, u, p, v) and is_left_of(x, y, u, v, q) and is_left_of(x, y, u, q, p)
+                is_left_of(x, y, u, p, v)
+                and is_left_of(x, y, u, v, q)
+                and is_left_of(x, y, u, q, p)
             ) or (
-                is_left_of(x, y, u, v, p) and is_left_of(x, y, u, q, v) and is_left_of(x, y, u, p, q)
+                is_left_of(x, y, u, v, p)
+                and is_left_of(x, y, u, q, v)
+                and is_left_of(x, y, u, p, q)
             ):
                 return False
     return True

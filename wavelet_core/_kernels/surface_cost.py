@@ -5,12 +5,12 @@ targets, the error of the star under the fan of each target, and what the update
 on the star of one vertex v is done in coordinates relative to v, in these arrays:
 
 - ring, spoke (MAX_RING,) int32: from half_edges.walk_ring
-- ring_xy (MAX_RING, 2), ring_z (MAX_RING, c) float64: where the ring lies
-- point_xy (capacity, 2), point_z (capacity, c) float64: the points of the star
-- fan_xy (MAX_RING, 2), fan_slope (MAX_RING, 2, c) float64: the fan of faces around one neighbour
-  over the rest of the ring: that rest, seen from the neighbour, and the gradients of the faces
+- ring_x, ring_y (MAX_RING,), ring_z (MAX_RING, c) float64: where the ring lies
+- near_x, near_y (capacity,), near_z (capacity, c) float64: the points of the star
+- fan_x, fan_y (MAX_RING,), slope_x, slope_y (MAX_RING, c) float64: the fan of faces around one
+  neighbour over the rest of the ring: that rest, from the neighbour, and the gradients of the faces
 - order (MAX_RING,) int32: positions in the ring of the legal targets, the most promising first
-- cover (MAX_RING,) int64, cover_weights (MAX_RING, 2): where v lies in the fan of each target
+- cover (MAX_RING,) int64, cover_weights (2, MAX_RING): where v lies in the fan of each target
 
 They are passed one by one: as a NamedTuple each use of one would count references (measured:
 twice the time).
@@ -75,13 +75,13 @@ def on_lattice(value, step):
 
 # Put the ring of v in place. Returns the square of twice its radius.
 @inlined
-def place_ring(v, size, ring, x, y, z, ring_xy, ring_z):
+def place_ring(v, size, ring, x, y, z, ring_x, ring_y, ring_z):
     diameter = 0.0
     vx, vy = x[v], y[v]
     for k in range(size):
         u = ring[k]
         rx, ry = x[u] - vx, y[u] - vy
-        ring_xy[k, 0], ring_xy[k, 1] = rx, ry
+        ring_x[k], ring_y[k] = rx, ry
         diameter = max(diameter, 4.0 * (rx * rx + ry * ry))
         for i in range(z.shape[1]):
             ring_z[k, i] = z[u, i]
@@ -100,14 +100,14 @@ def is_enclosed(size, ring, locked):
 # May the fan around ring[j] be laid over the rest of the ring? Returns the neighbour that precedes
 # the face with v in it, counter-clockwise, and the weights at v of the other two corners; or NONE.
 @inlined
-def cover_from(j, size, is_outline, ring_xy, diameter):
-    ax, ay = ring_xy[j, 0], ring_xy[j, 1]
+def cover_from(j, size, is_outline, ring_x, ring_y, diameter):
+    ax, ay = ring_x[j], ring_y[j]
     k = j + 1 if j + 1 < size else 0
-    before = ax * ring_xy[k, 1] - ay * ring_xy[k, 0]
+    before = ax * ring_y[k] - ay * ring_x[k]
     found, at_b, at_c = NONE, 0.0, 0.0
     for t in range(size - 2):
         following = k + 1 if k + 1 < size else 0
-        bx, by, cx, cy = ring_xy[k, 0], ring_xy[k, 1], ring_xy[following, 0], ring_xy[following, 1]
+        bx, by, cx, cy = ring_x[k], ring_y[k], ring_x[following], ring_y[following]
         behind = ax * cy - ay * cx
         area = bx * cy - by * cx + before - behind  # doubled
         if area <= FLATNESS_TOLERANCE * diameter and is_flat(ax, ay, bx, by, cx, cy, area):
@@ -144,40 +144,40 @@ def cover_on_edge(j, size, along):
 # of the star from below), then the nearest, then the first: order, own_error, cover and
 # cover_weights are filled. Returns their number.
 #
-# rule: from outline_rule; only: the one ring entry to look at, or NONE; measured: (n, c) of input
+# rule: from outline_rule; only: the one ring entry to look at, or NONE; is_barred (MAX_RING,) bool:
+# those that the link condition forbids; measured: (n, c) of input
 @inlined
 def legal_targets(
-    v, size, rule, along, only, ring, ring_xy, ring_z, diameter, measured, limits_tolerance,
+    v, size, rule, along, only, is_barred, ring, ring_x, ring_y, ring_z, diameter, measured, limits_tolerance,
     height_step, order, own_error, distance, cover, cover_weights,
 ):  # fmt: skip
     n_legal = 0
     is_outline = rule != NONE
     for j in range(0, size, size - 1 if is_outline else 1):
-        if only != NONE and ring[j] != only:
+        if is_barred[j] or (only != NONE and ring[j] != only):
             continue
-        b, at_b, at_c = cover_from(j, size, is_outline, ring_xy, diameter)
+        b, at_b, at_c = cover_from(j, size, is_outline, ring_x, ring_y, diameter)
         if b == NONE:
             continue
         if rule == CUTS:
             b, at_b, at_c = cover_on_edge(j, size, along)
-        cover[j], cover_weights[j, 0], cover_weights[j, 1] = b, at_b, at_c
+        cover[j], cover_weights[0, j], cover_weights[1, j] = b, at_b, at_c
         c = b + 1 if b + 1 < size else 0
         here, here_z = 0.0, 0.0
         for i in range(ring_z.shape[1]):
             a_z = ring_z[j, i]
-            error = (
-                a_z + at_b * (ring_z[b, i] - a_z) + at_c * (ring_z[c, i] - a_z)
-            ) - measured[v, i]
+            error = (a_z + at_b * (ring_z[b, i] - a_z) + at_c * (ring_z[c, i] - a_z)) - measured[
+                v, i
+            ]
             here += error * error
             if i == 0:
                 here_z = here
         if here_z > limits_tolerance:
             continue
-        own_error[j] = on_lattice(here, step_of(1, here, height_step))
-        squared = ring_xy[j, 0] ** 2 + ring_xy[j, 1] ** 2
-        distance[j] = on_lattice(squared, RELATIVE_STEP * squared)
+        own_error[j] = here
+        distance[j] = ring_x[j] ** 2 + ring_y[j] ** 2
         k = n_legal
-        while k > 0 and comes_before(j, order[k - 1], own_error, distance, ring):
+        while k > 0 and comes_before(j, order[k - 1], own_error, distance, ring, height_step):
             order[k] = order[k - 1]
             k -= 1
         order[k] = j
@@ -185,22 +185,30 @@ def legal_targets(
     return n_legal
 
 
-# Is the fan around ring[j] the better one to start with?
+# Is the fan around ring[j] the better one to start with? What differs by rounding is equal.
 @inlined
-def comes_before(j, other, own_error, distance, ring):
-    if own_error[j] != own_error[other]:
+def comes_before(j, other, own_error, distance, ring, height_step):
+    if not are_tied(own_error[j], own_error[other], height_step):
         return own_error[j] < own_error[other]
-    if distance[j] != distance[other]:
+    if not are_tied(distance[j], distance[other], 0.0):
         return distance[j] < distance[other]
     return ring[j] < ring[other]
+
+
+# Two squares, of errors of single points: about what step_of says, without its root
+@inlined
+def are_tied(a, b, height_step):
+    larger, squared_step = max(a, b), height_step * height_step
+    tied = 4.0 * squared_step * (larger + squared_step) + (RELATIVE_STEP * larger) ** 2
+    return (a - b) * (a - b) <= tied
 
 
 # Collect the points of the star of v; those that the outline leaves outside, where it cuts, are
 # judged at the nearest place of the new outline edge.
 @inlined
 def collect_points(
-    v, size, n_sides, rule, spoke, x, y, ring_xy, first_point, n_points_of, x_of, y_of, z_of,
-    point_xy, point_z,
+    v, size, n_sides, rule, spoke, x, y, ring_x, ring_y, first_point, n_points_of, x_of, y_of, z_of,
+    near_x, near_y, near_z,
 ):  # fmt: skip
     n_points = 0
     vx, vy = x[v], y[v]
@@ -210,53 +218,50 @@ def collect_points(
             px, py = x_of[p] - vx, y_of[p] - vy
             if rule == CUTS:
                 px, py, _ = nearest_on_edge(
-                    px, py, ring_xy[0, 0], ring_xy[0, 1], ring_xy[size - 1, 0],
-                    ring_xy[size - 1, 1],
+                    px, py, ring_x[0], ring_y[0], ring_x[size - 1],
+                    ring_y[size - 1],
                 )  # fmt: skip
-            point_xy[n_points, 0], point_xy[n_points, 1] = px, py
+            near_x[n_points], near_y[n_points] = px, py
             for i in range(z_of.shape[1]):
-                point_z[n_points, i] = z_of[p, i]
+                near_z[n_points, i] = z_of[p, i]
             n_points += 1
 
 
 # Lay the fan around ring[j]. Returns whether it spans half a turn or more.
 @inlined
-def lay_fan(j, size, ring_xy, ring_z, fan_xy, fan_slope):
-    ax, ay = ring_xy[j, 0], ring_xy[j, 1]
+def lay_fan(j, size, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y):
+    ax, ay = ring_x[j], ring_y[j]
     k = j
     for t in range(size - 1):
         k = k + 1 if k + 1 < size else 0
-        fan_xy[t, 0], fan_xy[t, 1] = ring_xy[k, 0] - ax, ring_xy[k, 1] - ay
+        fan_x[t], fan_y[t] = ring_x[k] - ax, ring_y[k] - ay
     is_wide = False
     k = j + 1 if j + 1 < size else 0
     for t in range(size - 2):
         following = k + 1 if k + 1 < size else 0
-        bx, by, cx, cy = fan_xy[t, 0], fan_xy[t, 1], fan_xy[t + 1, 0], fan_xy[t + 1, 1]
+        bx, by, cx, cy = fan_x[t], fan_y[t], fan_x[t + 1], fan_y[t + 1]
         per_area = 1.0 / (bx * cy - by * cx)
-        if fan_xy[0, 0] * cy - fan_xy[0, 1] * cx <= 0.0:
+        if fan_x[0] * cy - fan_y[0] * cx <= 0.0:
             is_wide = True
         for i in range(ring_z.shape[1]):
             to_b = (ring_z[k, i] - ring_z[j, i]) * per_area
             to_c = (ring_z[following, i] - ring_z[j, i]) * per_area
-            fan_slope[t, 0, i] = to_b * cy - to_c * by
-            fan_slope[t, 1, i] = to_c * bx - to_b * cx
+            slope_x[t, i] = to_b * cy - to_c * by
+            slope_y[t, i] = to_c * bx - to_b * cx
         k = following
     return is_wide
 
 
 # Which face of that fan holds the point at (x, y) from its centre?
 @inlined
-def find_wedge(n_wedges, is_wide, fan_xy, x, y):
+def find_wedge(n_wedges, is_wide, fan_x, fan_y, x, y):
     if is_wide:  # the side of a single ray tells nothing across half a turn
         for t in range(n_wedges):
-            if (
-                fan_xy[t, 0] * y - fan_xy[t, 1] * x >= 0.0
-                and fan_xy[t + 1, 0] * y - fan_xy[t + 1, 1] * x <= 0.0
-            ):
+            if fan_x[t] * y - fan_y[t] * x >= 0.0 and fan_x[t + 1] * y - fan_y[t + 1] * x <= 0.0:
                 return t
     wedge = 0
     for t in range(1, n_wedges):  # without branches, which would be mispredicted
-        wedge += fan_xy[t, 0] * y - fan_xy[t, 1] * x > 0.0
+        wedge += fan_x[t] * y - fan_y[t] * x > 0.0
     return wedge
 
 
@@ -265,20 +270,18 @@ def find_wedge(n_wedges, is_wide, fan_xy, x, y):
 # which is on the sum or on the largest.
 @inlined
 def fan_error(
-    j, size, n_points, point_xy, point_z, ring_xy, ring_z, fan_xy, fan_slope, by_sum, bound,
+    j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y, by_sum, bound,
     squared, largest,
 ):  # fmt: skip
-    is_wide = lay_fan(j, size, ring_xy, ring_z, fan_xy, fan_slope)
+    is_wide = lay_fan(j, size, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y)
     largest_z = 0.0
-    ax, ay = ring_xy[j, 0], ring_xy[j, 1]
+    ax, ay = ring_x[j], ring_y[j]
     for p in range(n_points):
-        x, y = point_xy[p, 0] - ax, point_xy[p, 1] - ay
-        t = find_wedge(size - 2, is_wide, fan_xy, x, y)
+        x, y = near_x[p] - ax, near_y[p] - ay
+        t = find_wedge(size - 2, is_wide, fan_x, fan_y, x, y)
         here = 0.0
         for i in range(ring_z.shape[1]):
-            error = (
-                ring_z[j, i] + fan_slope[t, 0, i] * x + fan_slope[t, 1, i] * y - point_z[p, i]
-            )
+            error = ring_z[j, i] + slope_x[t, i] * x + slope_y[t, i] * y - near_z[p, i]
             here += error * error
             if i == 0:
                 largest_z = max(largest_z, here)
@@ -294,8 +297,8 @@ def fan_error(
 # Targets whose errors differ by rounding are equal, and the first in order is taken.
 @inlined
 def best_target(
-    size, n_sides, n_legal, n_points, order, own_error, ring, point_xy, point_z, ring_xy, ring_z,
-    fan_xy, fan_slope, by_sum, bound, tolerance, height_step, origin, twin, outgoing,
+    size, n_legal, n_points, order, own_error, near_x, near_y, near_z, ring_x, ring_y, ring_z,
+    fan_x, fan_y, slope_x, slope_y, by_sum, bound, tolerance, height_step,
 ):  # fmt: skip
     best, found = bound, NONE
     is_cut = own_error[order[0]] >= bound
@@ -306,7 +309,7 @@ def best_target(
             break
         if n_points > 0:
             total, largest, largest_z = fan_error(
-                j, size, n_points, point_xy, point_z, ring_xy, ring_z, fan_xy, fan_slope, by_sum,
+                j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y, by_sum,
                 best, total, largest,
             )  # fmt: skip
         if not by_sum:
@@ -316,9 +319,7 @@ def best_target(
             continue
         if found != NONE and best - total <= step_of(n_points + 1, best, height_step):
             continue
-        if largest_z <= tolerance and meets_link_condition(
-            ring[j], ring, 0, size, n_sides, origin, twin, outgoing
-        ):
+        if largest_z <= tolerance:
             best, found = total, j
     return found, best, is_cut
 
@@ -410,15 +411,26 @@ def collapse_costs(
     with_update = weight.shape[0] > 0
     by_sum = limits.norm == LEAST_SQUARES
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
-    ring_xy, ring_z = np.empty((MAX_RING, 2)), np.empty((MAX_RING, n_channels))
-    fan_xy, fan_slope = np.empty((MAX_RING, 2)), np.empty((MAX_RING, 2, n_channels))
-    order, own_error, distance = np.empty(MAX_RING, np.int32), np.empty(MAX_RING), np.empty(MAX_RING)
-    cover, cover_weights = np.empty(MAX_RING, np.int64), np.empty((MAX_RING, 2))
+    ring_x, ring_y, ring_z = (
+        np.empty(MAX_RING),
+        np.empty(MAX_RING),
+        np.empty((MAX_RING, n_channels)),
+    )
+    fan_x, fan_y = np.empty(MAX_RING), np.empty(MAX_RING)
+    slope_x, slope_y = np.empty((MAX_RING, n_channels)), np.empty((MAX_RING, n_channels))
+    order, own_error, distance = (
+        np.empty(MAX_RING, np.int32),
+        np.empty(MAX_RING),
+        np.empty(MAX_RING),
+    )
+    cover, cover_weights = np.empty(MAX_RING, np.int64), np.empty((2, MAX_RING))
+    is_barred = np.zeros(MAX_RING, np.bool_)
     detail = np.empty(n_channels)
     capacity = 256
     q = start
     while q < stop:
-        point_xy, point_z = np.empty((capacity, 2)), np.empty((capacity, n_channels))
+        near_x, near_y = np.empty(capacity), np.empty(capacity)
+        near_z = np.empty((capacity, n_channels))
         while q < stop:
             v = todo[q]
             q += 1
@@ -443,44 +455,47 @@ def collapse_costs(
                 break
             for i in range(n_channels):
                 before_it += (z[v, i] - measured[v, i]) ** 2
-            diameter = place_ring(v, size, ring, x, y, z, ring_xy, ring_z)
+            diameter = place_ring(v, size, ring, x, y, z, ring_x, ring_y, ring_z)
             rule, along = NONE, 0.0
             if n_sides < size:
-                rule, along = outline_rule(v, size, ring, ring_xy, outline)
+                rule, along = outline_rule(v, size, ring, ring_x, ring_y, outline)
                 if rule == STAYS:
                     continue
             n_legal = legal_targets(
-                v, size, rule, along, known if keeps_target else NONE, ring, ring_xy, ring_z,
+                v, size, rule, along, known if keeps_target else NONE, is_barred, ring, ring_x, ring_y, ring_z,
                 diameter, measured, tolerance, height_step, order, own_error, distance, cover,
                 cover_weights,
             )  # fmt: skip
             if n_legal == 0:
+                is_barred[:size] = False
                 continue
             bound = cutoff + before_it if by_sum else cutoff
             if n_points > 0 and (keeps_target or own_error[order[0]] < bound):
                 collect_points(
-                    v, size, n_sides, rule, spoke, x, y, ring_xy, first_point, n_points_of, x_of,
-                    y_of, z_of, point_xy, point_z,
+                    v, size, n_sides, rule, spoke, x, y, ring_x, ring_y, first_point, n_points_of, x_of,
+                    y_of, z_of, near_x, near_y, near_z,
                 )  # fmt: skip
             if keeps_target:
-                j, best = order[0], 0.0
-                if not meets_link_condition(
-                    ring[j], ring, 0, size, n_sides, origin, twin, outgoing
-                ):
-                    is_stale[v], is_new[v] = True, True  # again, with all targets
-                    q -= 1
-                    continue
+                j, best, is_cut = order[0], 0.0, False
             else:
                 j, best, is_cut = best_target(
-                    size, n_sides, n_legal, n_points, order, own_error, ring, point_xy, point_z,
-                    ring_xy, ring_z, fan_xy, fan_slope, by_sum, bound, tolerance, height_step,
-                    origin, twin, outgoing,
+                    size, n_legal, n_points, order, own_error, near_x, near_y, near_z, ring_x,
+                    ring_y, ring_z, fan_x, fan_y, slope_x, slope_y, by_sum, bound, tolerance,
+                    height_step,
                 )  # fmt: skip
-                if j == NONE:
-                    if is_cut and cutoff < np.inf:
-                        cost[v] = cutoff  # a lower bound only
-                        is_stale[v], is_new[v] = True, True
-                    continue
+            if j != NONE and not meets_link_condition(
+                ring[j], ring, 0, size, n_sides, origin, twin, outgoing
+            ):
+                is_barred[j] = True  # once more, without that target
+                is_stale[v], is_new[v] = True, True
+                q -= 1
+                continue
+            is_barred[:size] = False
+            if j == NONE:
+                if is_cut and cutoff < np.inf:
+                    cost[v] = cutoff  # a lower bound only
+                    is_stale[v], is_new[v] = True, True
+                continue
             target[v] = ring[j]
             if not by_sum:
                 cost[v] = on_lattice(best, step_of(1, best, height_step))
@@ -490,14 +505,14 @@ def collapse_costs(
                 cost[v] = on_lattice(best - before_it, step)
                 continue
             change, terms = update_corners(
-                v, j, cover[j], cover_weights[j, 0], cover_weights[j, 1], size, n_sides, ring,
+                v, j, cover[j], cover_weights[0, j], cover_weights[1, j], size, n_sides, ring,
                 spoke, ring_z, z, measured, integrals, locked, slope, weight, vertex_slope,
                 vertex_weight, detail,
             )  # fmt: skip
             here = change - before_it
             if n_points > 0:
                 here = fan_error(
-                    j, size, n_points, point_xy, point_z, ring_xy, ring_z, fan_xy, fan_slope, True,
+                    j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y, True,
                     cutoff, here, 0.0,
                 )[0]  # fmt: skip
             step = step_of(n_points + 1, before_it + abs(here), height_step) + MOMENT_STEP * terms

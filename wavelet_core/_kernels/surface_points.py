@@ -52,14 +52,14 @@ class FacePoints(NamedTuple):
 
 
 # Which face of the fan (a, b[t], b[t + 1]), t < n_wedges, holds the point at (x, y) from a?
-# fan_xy (n_wedges + 1, 2) float64: b from a, counter-clockwise; hint: where to look first
+# fan_xy (2, n_wedges + 1) float64: b from a, counter-clockwise; hint: where to look first
 @inlined
 def locate(n_wedges, fan_xy, x, y, hint):
     t = hint
-    while t > 0 and fan_xy[t, 0] * y - fan_xy[t, 1] * x < 0.0:
+    while t > 0 and fan_xy[0, t] * y - fan_xy[1, t] * x < 0.0:
         t -= 1
     if t == hint:
-        while t < n_wedges - 1 and fan_xy[t + 1, 0] * y - fan_xy[t + 1, 1] * x > 0.0:
+        while t < n_wedges - 1 and fan_xy[0, t + 1] * y - fan_xy[1, t + 1] * x > 0.0:
             t += 1
     if is_in_wedge(t, fan_xy, x, y):
         return t
@@ -72,8 +72,8 @@ def locate(n_wedges, fan_xy, x, y, hint):
 @inlined
 def is_in_wedge(t, fan_xy, x, y):
     return (
-        fan_xy[t, 0] * y - fan_xy[t, 1] * x >= 0.0
-        and fan_xy[t + 1, 0] * y - fan_xy[t + 1, 1] * x <= 0.0
+        fan_xy[0, t] * y - fan_xy[1, t] * x >= 0.0
+        and fan_xy[0, t + 1] * y - fan_xy[1, t + 1] * x <= 0.0
     )
 
 
@@ -90,14 +90,14 @@ def count_points(start, stop, indptr, ring_faces, points, size):
 
 
 # Lay the ring of a collapsed vertex, from its target on, as a fan around that target.
-# fan_xy (MAX_RING, 2) float64, filled. Returns whether the new outline edge cuts v off, the ends of
+# fan_xy (2, MAX_RING) float64, filled. Returns whether the new outline edge cuts v off, the ends of
 # that edge as seen from the target, and the share of it at which v is judged.
 @inlined
 def lay_new_fan(v, base, size, ring, ring_faces, x, y, squared_tolerance, fan_xy):
     a = ring[base]
     for t in range(size - 1):
-        fan_xy[t, 0] = x[ring[base + 1 + t]] - x[a]
-        fan_xy[t, 1] = y[ring[base + 1 + t]] - y[a]
+        fan_xy[0, t] = x[ring[base + 1 + t]] - x[a]
+        fan_xy[1, t] = y[ring[base + 1 + t]] - y[a]
     ends_at_target = ring_faces[base] < 0
     if not (ends_at_target or ring_faces[base + size - 1] < 0):
         return False, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -115,7 +115,7 @@ def lay_new_fan(v, base, size, ring, ring_faces, x, y, squared_tolerance, fan_xy
 @inlined
 def weights_in_fan(n_wedges, fan_xy, x, y):
     t = locate(n_wedges, fan_xy, x, y, 0)
-    bx, by, cx, cy = fan_xy[t, 0], fan_xy[t, 1], fan_xy[t + 1, 0], fan_xy[t + 1, 1]
+    bx, by, cx, cy = fan_xy[0, t], fan_xy[1, t], fan_xy[0, t + 1], fan_xy[1, t + 1]
     doubled_area = bx * cy - by * cx
     at_b = max((x * cy - y * cx) / doubled_area, 0.0)
     at_c = max((bx * y - by * x) / doubled_area, 0.0)
@@ -136,7 +136,7 @@ def hand_over(
     start_of, n_points = points.start, points.n_points
     point_x, point_y, point_z = points.x, points.y, points.z
     n_channels = vertex_z.shape[1]
-    fan_xy = np.empty((MAX_RING, 2))
+    fan_xy = np.empty((2, MAX_RING))
     cursor = np.empty(MAX_RING, np.int64)
     wedge = np.empty(256, np.int32)
     for row in range(start, stop):

@@ -91,6 +91,7 @@ class Pyramid:
         update: str,
         locked: NDArray | None = None,
         parameters: Mapping[str, Any] | None = None,
+        stop: StopRecord | None = None,
     ) -> Pyramid:
         """Return the pyramid of parts that nobody has checked yet, such as those of a file.
 
@@ -110,6 +111,7 @@ class Pyramid:
             update=update,
             locked=None if locked is None else frozen(np.asarray(locked, dtype=bool)),
             parameters=dict(parameters or {}),
+            stop=stop,
         )
 
     @property
