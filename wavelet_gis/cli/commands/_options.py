@@ -83,6 +83,13 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         help="largest share of the vertices that a level may take; smaller ones are slower and "
         "better",
     )
+    group.add_argument(
+        "--outline-tolerance",
+        type=float,
+        metavar="D",
+        help="let vertices of the outline and of holes go while the outline stays within this "
+        "distance, in the unit of x and y (metres for a CRS in degrees); by default 0",
+    )
     group.add_argument("--bending-weight", type=float, metavar="W", help="of the paper's cost")
     group.add_argument(
         "--attribute-weights",
@@ -105,6 +112,7 @@ def analysis_options(arguments: argparse.Namespace) -> dict[str, Any]:
         "update": arguments.update,
         "signal": arguments.signal,
         "removal_fraction": arguments.removal_fraction,
+        "outline_tolerance": arguments.outline_tolerance,
         "bending_weight": arguments.bending_weight,
         "attribute_weights": arguments.attribute_weights,
     }

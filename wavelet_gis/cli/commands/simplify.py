@@ -65,6 +65,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_core import analyse
     from wavelet_core.accuracy.fitted_heights import fitted
     from wavelet_core.mesh.location import surface_errors
+    from wavelet_core.partition.outline import area_change
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
@@ -108,6 +109,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         "rmse": float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
         "max_error": float(np.abs(covered).max(initial=0.0)),
         "n_levels": pyramid.n_levels,
+        "stopped_by": pyramid.stop.reason,
+        "area_change": area_change(terrain.mesh, mesh),
         "seconds": round(perf_counter() - began, 3),
     }
     console.say(
@@ -116,4 +119,11 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"{figures['max_error']:.4g} ({terrain.vertical_unit}) at all input points; "
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
+    if pyramid.stop.misses_target:
+        console.say(str(pyramid.stop))
+    if arguments.outline_tolerance:
+        console.say(
+            f"the outline moved by at most {arguments.outline_tolerance:g}; the area changed by "
+            f"{figures['area_change']:.4g} (square of the unit of x and y)"
+        )
     console.figures(figures)
