@@ -23,7 +23,8 @@ import numpy as np
 
 from ._jit import inlined, njit
 from .half_edges import MAX_RING, meets_link_condition, walk_ring
-from .outline import CUTS, STAYS, STRAIGHT, nearest_on_edge, outline_rule
+from .lattice import on_lattice
+from .outline import CUTS, STAYS, nearest_on_edge, outline_rule
 
 # new faces thinner than this part of their longest edge squared are refused; it is above what
 # rounding makes of a flat face in coordinates of 1e7 times its size, and below any face of a survey
@@ -62,15 +63,6 @@ class Limits(NamedTuple):
 @inlined
 def step_of(n, squared, height_step):
     return height_step * (2.0 * math.sqrt(n * squared) + n * height_step) + RELATIVE_STEP * squared
-
-
-# The value on a lattice of the next power of two above `step`: equal for what differs by rounding
-@inlined
-def on_lattice(value, step):
-    if step <= 0.0:
-        return value
-    width = math.ldexp(1.0, math.frexp(step)[1])
-    return np.rint(value / width) * width
 
 
 # Put the ring of v in place. Returns the square of twice its radius.

@@ -64,8 +64,12 @@ def test_a_finite_cutoff_leaves_the_costs_below_it_as_they_are():
     take_level(whole)
     take_level(part)
     whole.rank("rms", np.inf, np.inf)
-    cutoff = float(np.median(whole._vertices.cost[whole._vertices.lives & np.isfinite(whole._vertices.cost)]))
-    part._vertices.cost[part._vertices.is_stale] = -np.inf  # so that all are looked at, whatever they cost before
+    cutoff = float(
+        np.median(whole._vertices.cost[whole._vertices.lives & np.isfinite(whole._vertices.cost)])
+    )
+    part._vertices.cost[
+        part._vertices.is_stale
+    ] = -np.inf  # so that all are looked at, whatever they cost before
     part.rank("rms", np.inf, cutoff)
     known = part._vertices.lives & ~part._vertices.is_stale & (part._vertices.cost < cutoff)
     assert known.sum() > 50
