@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from wavelet_gis.cli.table_help import names_from
 from wavelet_gis.io.formats import (
     MESH_FORMATS,
     MESH_SUFFIXES,
@@ -100,11 +101,12 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         help="a design of the paper, prediction and update in one, such as GLMN or NNLSMN; with "
         "the paper's partition unless --partition names another",
     )
-    group.add_argument("--partition", metavar="NAME", help="which vertices are removed at a level")
-    group.add_argument("--prediction", metavar="NAME", help="how removed vertices are predicted")
-    group.add_argument(
-        "--update", metavar="NAME", help="how details are passed on to the vertices kept"
-    )
+    for table, flag, help_ in (
+        ("PARTITIONS", "--partition", "which vertices are removed at a level"),
+        ("PREDICTIONS", "--prediction", "how removed vertices are predicted"),
+        ("UPDATES", "--update", "how details are passed on to the vertices kept"),
+    ):
+        names_from(table, group.add_argument(flag, metavar="NAME", help=help_))
     group.add_argument(
         "--signal", metavar="z|xyz", help="lift elevation and attributes, or x and y too"
     )
