@@ -1,4 +1,4 @@
-"""LAS, LAZ and COPC files in and out, through laspy and lazrs."""
+"""LAS, LAZ and COPC files in and out: laspy knows the dimensions, the bytes around are kept."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import io
 import os
 import warnings
 from collections.abc import Sequence
+from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,16 @@ from numpy.typing import NDArray
 from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.crs.las import las_crs
-from wavelet_gis.errors import InputFileError, OutputFileError, PointCloudWarning
+from wavelet_gis.errors import CrsWarning, InputFileError, OutputFileError, PointCloudWarning
+from wavelet_gis.io import las_block, laz_decoder
+from wavelet_gis.io.las_header import (
+    LARGEST_COORDINATE,
+    LasLayout,
+    laszip_record,
+    parse_layout,
+    read_layout,
+    records_of,
+)
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 from wavelet_gis.model.ground import GROUND_CLASS, height_above_ground
 
@@ -23,7 +34,7 @@ if TYPE_CHECKING:
     from laspy import LasHeader
     from laspy.point.record import PackedPointRecord
 
-__all__ = ["ALIASES", "read_cloud", "write_cloud"]
+__all__ = ["ALIASES", "NOISE_CLASSES", "read_cloud", "write_cloud"]
 
 #: Name of the attribute that is computed rather than read.
 HEIGHT_ABOVE_GROUND = "hag"
@@ -35,14 +46,14 @@ ALIASES: dict[str, tuple[str, ...]] = {
     "returns": ("return_number", "number_of_returns"),
 }
 
-#: Owners of VLRs on how points are compressed or arranged, wrong in any file written anew.
-_STALE_OWNERS = ("laszip encoded", "copc")
+#: ASPRS classes of points that hit nothing on the ground: low and high noise.
+NOISE_CLASSES = (7, 18)
+
+#: No points are compressed to less than one part in this; thousands of equal ones come near it.
+_MOST_COMPRESSED = 100_000
 
 #: Point formats with references to waveform packets.
 _WAVEFORM_FORMATS = (4, 5, 9, 10)
-
-#: Offset in the header of the day and year of creation.
-_CREATION_DATE = slice(90, 94)
 
 
 def read_cloud(
@@ -51,6 +62,8 @@ def read_cloud(
     attributes: Sequence[str] = (),
     classes: Sequence[int] | None = None,
     carry: bool = True,
+    keep_noise: bool = False,
+    keep_withheld: bool = False,
 ) -> tuple[PointCloud, Georeference]:
     """Return the chosen points of a LAS or LAZ file, and what it tells of their coordinates.
 
@@ -66,6 +79,11 @@ def read_cloud(
         Only points of these classes; the ground for ``hag`` is that of the whole file.
     carry : bool
         Keep the other dimensions too, to be given back untouched.
+    keep_noise : bool
+        Let points of the classes 7 and 18 (low and high noise) be part of the surface. By default
+        they are only carried, to be given back; a class named in `classes` is always kept.
+    keep_withheld : bool
+        The same for points with the withheld flag.
 
     Raises
     ------
@@ -73,28 +91,26 @@ def read_cloud(
         When the file is missing, no LAS file, damaged, empty, or lacks what was asked for.
     MissingDependencyError
         When laspy, or lazrs for a LAZ file, is not installed.
+
+    Warns
+    -----
+    PointCloudWarning
+        What is odd about the file, and which points are no part of the surface.
+    CrsWarning
+        What is odd about its CRS.
     """
     name = os.fspath(path)
     if os.path.isdir(name):
         raise InputFileError(f"{name}: this is a folder; name the LAS or LAZ file in it.")
     if not os.path.exists(name):
         raise InputFileError(f"{name}: there is no such file; check the path.")
-    header, points, header_bytes = _read_all(name)
+    layout, header, points, tail, tail_at = _read_all(name)
     array = points.array
-    if len(array) == 0:
-        raise InputFileError(
-            f"{name}: the file holds no points"
-            + (f" although its header announces {header.point_count}" if header.point_count else "")
-            + "; get it again."
+    if len(array) < layout.n_points:
+        _tell(
+            f"{name}: the header announces {layout.n_points} points, the file ends after "
+            f"{len(array)}; those are used"
         )
-    if len(array) < header.point_count:
-        warnings.warn(
-            f"{name}: the header announces {header.point_count} points, the file ends after "
-            f"{len(array)}; those are used",
-            PointCloudWarning,
-            stacklevel=2,
-        )
-    _check_scaling(name, header)
     lifted = [
         attribute
         for wanted in dict.fromkeys(attributes)
@@ -102,22 +118,29 @@ def read_cloud(
     ]
     _check_names(name, lifted)
     chosen = _chosen(name, points, classes)
+    aside = _aside(name, points, chosen, classes, keep_noise, keep_withheld)
     integers = np.empty((np.count_nonzero(chosen) if chosen is not None else len(array), 3), "i4")
     for k, axis in enumerate("XYZ"):
         integers[:, k] = _select(array[axis], chosen)
     cloud = PointCloud(
         integers=integers,
-        scales=np.array(header.scales, dtype=np.float64),
-        offsets=np.array(header.offsets, dtype=np.float64),
-        attributes=tuple(_with_values(a, _select(a.values, chosen)) for a in lifted),
+        scales=np.array(layout.scales, dtype=np.float64),
+        offsets=np.array(layout.offsets, dtype=np.float64),
+        attributes=tuple(replace(a, values=_select(a.values, chosen)) for a in lifted),
         carried=_carried(points, lifted, chosen) if carry else {},
-        header=np.frombuffer(header_bytes, np.uint8),
-        evlrs=_evlr_bytes(name, header),
+        header=np.frombuffer(layout.block, np.uint8),
+        evlrs=np.frombuffer(tail, np.uint8),
         n_in_file=len(array),
         classes=None if classes is None else tuple(int(c) for c in classes),
+        aside=aside,
+        evlrs_at=tail_at,
     )
-    _tell_of_waveforms(name, header)
-    return cloud, las_crs(header)
+    _check_extent(name, layout, points)
+    _tell_of_waveforms(name, layout)
+    place = las_crs(_projection_records(layout, tail, tail_at))
+    for note in place.notes:
+        warnings.warn(f"{name}: {note}", CrsWarning, stacklevel=2)
+    return cloud, place
 
 
 def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
@@ -128,54 +151,33 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
     path : path
         ``.laz`` is compressed, anything else is not.
     cloud : PointCloud
-        What to write.
+        What to write. Where it is what was read, an uncompressed file is byte for byte the one
+        that was read if that was uncompressed too.
 
     Raises
     ------
     OutputFileError
-        When laspy cannot write this version or point format.
+        When the points cannot be compressed, or need lazrs.
     """
-    laspy = _laspy()
-    header = _header_from(laspy, cloud.header)
-    stored_date = bytes(cloud.header[_CREATION_DATE])
-    # Taken out one by one: setting the list anew would make laspy rewrite the other records.
-    for stale in [v for v in header.vlrs if v.user_id in _STALE_OWNERS]:
-        header.vlrs.remove(stale)
-    computed = [a for a in cloud.attributes if a.dimension == HEIGHT_ABOVE_GROUND]
-    for attribute in computed:
-        if attribute.name not in header.point_format.dimension_names:
-            header.add_extra_dim(
-                laspy.ExtraBytesParams(attribute.name, "f4", description="Height above ground")
-            )
-    if header.version.minor == 0:  # laspy knows no layout for 1.0, which 1.1 only adds to
-        header._version = laspy.header.Version(1, 1)
-    record = laspy.PackedPointRecord.zeros(cloud.n_points, header.point_format)
-    for name, values in cloud.carried.items():
-        if name in (record.array.dtype.names or ()) and name not in ("X", "Y", "Z"):
-            record.array[name] = values
-    for k, axis in enumerate("XYZ"):
-        record.array[axis] = cloud.integers[:, k]
+    was = parse_layout("the stored LAS header", cloud.header.tobytes())
+    layout = las_block.rebuilt(was)
     for attribute in cloud.attributes:
-        _put(record, attribute)
-    try:
-        with open(path, "wb") as stream:
-            writer = laspy.LasWriter(
-                stream,
-                header,
-                do_compress=Path(path).suffix.lower() == ".laz",
-                closefd=False,
-                encoding_errors="ignore",
-            )
-            writer.write_points(record)
-            _write_evlrs(laspy, writer, cloud.evlrs)
-            writer.close()
-            if not any(stored_date):  # laspy writes today where there was no date
-                stream.seek(_CREATION_DATE.start)
-                stream.write(stored_date)
-    except (laspy.LaspyException, ValueError, KeyError) as error:
-        raise OutputFileError(
-            f"{path}: the points cannot be written as LAS {header.version} ({error})."
-        ) from error
+        if attribute.dimension == HEIGHT_ABOVE_GROUND and not _has_dimension(layout, attribute):
+            layout = las_block.described(layout, attribute.name, "Height above ground")
+    record = _record_of(cloud, layout)
+    compressor = _laz_record(path, record) if Path(path).suffix.lower() == ".laz" else None
+    if compressor is not None:
+        layout = las_block.rebuilt(layout, laszip=bytes(compressor.record_data()))
+    block, tail = layout.block, cloud.evlrs.tobytes()
+    if cloud.n_points != was.n_points or cloud.is_altered:
+        block = las_block.with_counts(block, cloud, _return_numbers(record))
+    with open(path, "wb") as stream:
+        stream.write(block)
+        _write_points(path, stream, record, compressor)
+        end = stream.seek(0, os.SEEK_END)
+        stream.write(tail)
+        stream.seek(0)
+        stream.write(las_block.moved(block, was, tail, cloud.evlrs_at, end))
 
 
 def _laspy() -> Any:
@@ -189,42 +191,175 @@ def _laspy() -> Any:
     return laspy
 
 
-def _read_all(name: str) -> tuple[LasHeader, PackedPointRecord, bytes]:
+def _tell(message: str) -> None:
+    warnings.warn(message, PointCloudWarning, stacklevel=3)
+
+
+def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes, int | None]:
+    """Return the layout, laspy's view of it, the points, and what follows them."""
+    _laspy()
+    with open(name, "rb") as stream:
+        layout = read_layout(name, stream)
+        if layout.n_points == 0:
+            raise InputFileError(f"{name}: the file holds no points; get it again.")
+        header = _laspy_header(name, layout)
+        try:
+            points = _points(name, layout, header, stream)
+        except MemoryError as error:
+            raise InputFileError(
+                f"{name}: the header announces more points than memory can hold; if that is no "
+                "mistake, cut the file into tiles."
+            ) from error
+        for note in layout.notes:
+            _tell(f"{name}: {note}")
+        start = layout.points_end
+        if layout.is_compressed:
+            places = [place for place in (layout.evlr_start, layout.waveform_start) if place]
+            start = min(places, default=os.fstat(stream.fileno()).st_size)
+        stream.seek(start)
+        tail, tail_at, note = las_block.tail_of(stream.read(), start, layout)
+        if note:
+            _tell(f"{name}: {note}")
+    return layout, header, points, tail, tail_at
+
+
+def _laspy_header(name: str, layout: LasLayout) -> LasHeader:
+    """Return laspy's header, which knows the dimensions of the records."""
     laspy = _laspy()
     try:
-        with laspy.open(name) as reader:
-            if reader.header.are_points_compressed and not laspy.LazBackend.detect_available():
-                raise MissingDependencyError(
-                    f"{name}: reading LAZ needs lazrs; install it with 'pip install lazrs'."
-                )
-            points = reader.read_points(-1)
-            header = reader.header
-        with open(name, "rb") as stream:
-            header_bytes = stream.read(header.offset_to_point_data)
-    except MissingDependencyError:
-        raise
-    except MemoryError as error:
-        raise InputFileError(
-            f"{name}: the header announces more points than memory can hold; if that is no "
-            "mistake, cut the file into tiles."
-        ) from error
-    # laspy lets whatever a damaged file provokes in it pass: struct, Unicode, value errors.
+        header = laspy.LasHeader.read_from(io.BytesIO(las_block.for_laspy(layout)))
+        n_bytes = header.point_format.dtype().itemsize
+    # laspy lets whatever a damaged record provokes in it pass: struct, Unicode, value errors.
     except Exception as error:
         reason = str(error).splitlines()[0].rstrip(".") if str(error) else type(error).__name__
         raise InputFileError(
-            f"{name}: this cannot be read as LAS or LAZ ({reason}); the file is damaged or of "
-            "another format, get it again."
+            f"{name}: this cannot be read as LAS or LAZ ({reason}); the file is damaged, get it "
+            "again."
         ) from error
-    return header, points, header_bytes
-
-
-def _check_scaling(name: str, header: LasHeader) -> None:
-    numbers = np.concatenate([header.scales, header.offsets])
-    if not np.isfinite(numbers).all() or (np.asarray(header.scales) == 0).any():
+    if n_bytes != layout.record_length:
         raise InputFileError(
-            f"{name}: the header has the scales {list(header.scales)} and offsets "
-            f"{list(header.offsets)}, which give no coordinates; the file is damaged."
+            f"{name}: the record on the extra dimensions describes points of {n_bytes} bytes, the "
+            f"header of {layout.record_length}; the file is damaged, get it again."
         )
+    return header
+
+
+def _points(name: str, layout: LasLayout, header: LasHeader, stream: BinaryIO) -> PackedPointRecord:
+    laspy, dtype = _laspy(), header.point_format.dtype()
+    if not layout.is_compressed:
+        stream.seek(layout.points_start)
+        array = np.fromfile(stream, dtype, layout.n_points)
+        return laspy.PackedPointRecord(array, header.point_format)
+    if find_spec("lazrs") is None:
+        raise MissingDependencyError(
+            f"{name}: reading LAZ needs lazrs; install it with 'pip install lazrs'."
+        )
+    n_bytes = os.fstat(stream.fileno()).st_size - layout.points_start
+    if layout.n_points * layout.record_length > _MOST_COMPRESSED * n_bytes:
+        raise InputFileError(
+            f"{name}: the header announces {layout.n_points} points in {n_bytes} compressed bytes; "
+            "the file is damaged, get it again."
+        )
+    array = np.empty(layout.n_points, dtype)
+    job = laz_decoder.Job(
+        path=name,
+        start=layout.points_start,
+        record=laszip_record(name, layout).data,
+        record_length=layout.record_length,
+        n_points=layout.n_points,
+    )
+    try:
+        laz_decoder.decoded(job, array.view(np.uint8))
+    except laz_decoder.DecodeError as error:
+        raise InputFileError(
+            f"{name}: the compressed points cannot be read ({error}); the file is damaged, get it "
+            "again."
+        ) from error
+    return laspy.PackedPointRecord(array, header.point_format)
+
+
+def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> None:
+    """Refuse coordinates that no CRS has, and tell of a header that claims others than there are.
+
+    A header with other bounds than its points is how a damaged scale or offset shows.
+    """
+    for k, axis in enumerate("xyz"):
+        stored = points.array[axis.upper()]
+        ends = np.array([stored.min(), stored.max()]) * layout.scales[k] + layout.offsets[k]
+        low, high = float(ends.min()), float(ends.max())
+        if max(-low, high) > LARGEST_COORDINATE:
+            raise InputFileError(
+                f"{name}: {axis} runs from {low:g} to {high:g}, which no CRS has; the scales and "
+                "offsets in the header are wrong, or the file is damaged: get it again."
+            )
+        # Many writers round the bounds, to a unit in the last place or to the next number.
+        slack = 1.5 * abs(layout.scales[k]) + 1e-9 * max(-low, high) + 0.01 * (high - low)
+        told = layout.low[k], layout.high[k]
+        if not (abs(told[0] - low) <= slack and abs(told[1] - high) <= slack):
+            _tell(
+                f"{name}: the header says that {axis} runs from {told[0]:.10g} to {told[1]:.10g}, "
+                f"the points run from {low:.10g} to {high:.10g}; if that is no old mistake, the "
+                "file is damaged"
+            )
+
+
+def _projection_records(
+    layout: LasLayout, tail: bytes, tail_at: int | None
+) -> list[tuple[int, bytes]]:
+    """Return the records on the CRS: number and content."""
+    first = 0 if tail_at is None else layout.evlr_start - tail_at
+    found = [(r, layout.block) for r in layout.vlrs]
+    if layout.n_evlrs:
+        found += [(r, tail) for r in records_of(tail, first, layout.n_evlrs, extended=True)]
+    return [
+        (r.record_id, block[r.data_start : r.end])
+        for r, block in found
+        if r.user_id == "LASF_Projection"
+    ]
+
+
+def _aside(
+    name: str,
+    points: PackedPointRecord,
+    chosen: NDArray[np.bool_] | None,
+    classes: Sequence[int] | None,
+    keep_noise: bool,
+    keep_withheld: bool,
+) -> NDArray[np.bool_] | None:
+    """Return which of the chosen points are carried only, and say how many they are."""
+    of_point = _select(np.array(points["classification"]), chosen)
+    noise_classes = [] if keep_noise else [c for c in NOISE_CLASSES if c not in (classes or ())]
+    is_noise = np.isin(of_point, noise_classes)
+    is_withheld = _select(np.array(points["withheld"]).astype(bool), chosen)
+    if keep_withheld:
+        is_withheld = np.zeros_like(is_withheld)
+    aside = is_noise | is_withheld
+    n_aside = int(np.count_nonzero(aside))
+    if n_aside == 0:
+        return None
+    parts = [
+        f"{np.count_nonzero(mask)} {what}"
+        for mask, what in (
+            (is_withheld, "with the withheld flag"),
+            (is_noise & ~is_withheld, "of the noise classes 7 and 18"),
+        )
+        if mask.any()
+    ]
+    flags = [
+        flag
+        for mask, flag in ((is_withheld, "--keep-withheld"), (is_noise, "--keep-noise"))
+        if mask.any()
+    ]
+    if n_aside == len(aside):
+        raise InputFileError(
+            f"{name}: all points are left out of the surface ({' and '.join(parts)}); keep them "
+            f"with {' and '.join(flags)}."
+        )
+    _tell(
+        f"{name}: {n_aside} of {len(aside)} points are left out of the surface "
+        f"({' and '.join(parts)}); they are carried along, {' and '.join(flags)} lets them in"
+    )
+    return aside
 
 
 def _attributes(
@@ -277,7 +412,9 @@ def _dimension(dimension: str, points: PackedPointRecord) -> list[PointAttribute
 def _height_attribute(points: PackedPointRecord, header: LasHeader) -> PointAttribute:
     integers = np.column_stack([points.array[axis] for axis in "XYZ"])
     coordinates = integers * np.asarray(header.scales) + np.asarray(header.offsets)
-    is_ground = np.array(points["classification"]) == GROUND_CLASS
+    is_ground = (np.array(points["classification"]) == GROUND_CLASS) & ~np.array(
+        points["withheld"]
+    ).astype(bool)
     heights = height_above_ground(coordinates, is_ground)
     return PointAttribute(HEIGHT_ABOVE_GROUND, HEIGHT_ABOVE_GROUND, heights)
 
@@ -312,17 +449,6 @@ def _select(values: NDArray[Any], chosen: NDArray[np.bool_] | None) -> NDArray[A
     return np.ascontiguousarray(values if chosen is None else values[chosen])
 
 
-def _with_values(attribute: PointAttribute, values: NDArray[Any]) -> PointAttribute:
-    return PointAttribute(
-        attribute.name,
-        attribute.dimension,
-        values,
-        attribute.component,
-        attribute.scale,
-        attribute.offset,
-    )
-
-
 def _carried(
     points: PackedPointRecord, lifted: list[PointAttribute], chosen: NDArray[np.bool_] | None
 ) -> dict[str, NDArray[Any]]:
@@ -353,47 +479,73 @@ def _put(record: PackedPointRecord, attribute: PointAttribute) -> None:
     record[attribute.dimension] = np.minimum(attribute.values, largest)
 
 
-def _tell_of_waveforms(name: str, header: LasHeader) -> None:
-    if header.point_format.id in _WAVEFORM_FORMATS:
-        warnings.warn(
-            f"{name}: the points refer to waveforms; their references are carried, the waveform "
-            "samples themselves are not",
-            PointCloudWarning,
-            stacklevel=3,
-        )
+def _has_dimension(layout: LasLayout, attribute: PointAttribute) -> bool:
+    names = _laspy_header("the stored LAS header", layout).point_format.dimension_names
+    return attribute.name in list(names)
 
 
-def _evlr_bytes(name: str, header: LasHeader) -> NDArray[np.uint8]:
-    evlrs = header.evlrs
-    if evlrs is None or len(evlrs) == 0:
-        return np.empty(0, np.uint8)
-    stream = io.BytesIO()
-    kept = type(evlrs)(v for v in evlrs if v.user_id not in _STALE_OWNERS)
+def _record_of(cloud: PointCloud, layout: LasLayout) -> PackedPointRecord:
+    """Return the point records, every field in its place."""
+    header = _laspy_header("the stored LAS header", layout)
+    record = _laspy().PackedPointRecord.zeros(cloud.n_points, header.point_format)
+    for name, values in cloud.carried.items():
+        if name in (record.array.dtype.names or ()) and name not in ("X", "Y", "Z"):
+            record.array[name] = values
+    for k, axis in enumerate("XYZ"):
+        record.array[axis] = cloud.integers[:, k]
+    for attribute in cloud.attributes:
+        _put(record, attribute)
+    return record
+
+
+def _return_numbers(record: PackedPointRecord) -> NDArray[np.integer]:
+    return np.array(record["return_number"])
+
+
+def _laz_record(path: str | os.PathLike[str], record: PackedPointRecord) -> Any:
+    """Return lazrs' record on the compression of such points."""
     try:
-        kept.write_to(stream, as_extended=True, encoding_errors="ignore")
-    except (ValueError, OverflowError) as error:
-        warnings.warn(
-            f"{name}: the extended VLRs cannot be carried ({error})",
-            PointCloudWarning,
-            stacklevel=3,
-        )
-        return np.empty(0, np.uint8)
-    return np.frombuffer(stream.getvalue(), np.uint8)
-
-
-def _write_evlrs(laspy: Any, writer: Any, stored: NDArray[np.uint8]) -> None:
-    if len(stored) == 0 or writer.header.version.minor < 4:
-        return
-    stream, evlrs = io.BytesIO(stored.tobytes()), []
-    while stream.tell() < len(stored):
-        evlrs.extend(laspy.vlrs.vlrlist.VLRList.read_from(stream, 1, extended=True))
-    writer.write_evlrs(laspy.vlrs.vlrlist.VLRList(evlrs))
-
-
-def _header_from(laspy: Any, stored: NDArray[np.uint8]) -> LasHeader:
-    try:
-        return laspy.LasHeader.read_from(io.BytesIO(stored.tobytes()))
-    except Exception as error:  # whatever a damaged header provokes in laspy
-        raise InputFileError(
-            f"the stored LAS header is damaged ({error}); analyse the input anew."
+        import lazrs
+    except ImportError as error:
+        raise MissingDependencyError(
+            f"{path}: writing LAZ needs lazrs; install it with 'pip install lazrs'."
         ) from error
+    form = record.point_format
+    try:
+        return lazrs.LazVlr.new_for_compression(form.id, form.num_extra_bytes)
+    except lazrs.LazrsError as error:
+        raise _not_compressible(path, form.id, error) from error
+
+
+def _write_points(
+    path: str | os.PathLike[str], stream: BinaryIO, record: PackedPointRecord, laz: Any
+) -> None:
+    content = np.ascontiguousarray(record.array).view(np.uint8)
+    if laz is None:
+        stream.write(content.data)
+        return
+    import lazrs
+
+    try:
+        # One thread: a pool of them would hang in a process that is forked later.
+        compressor = lazrs.LasZipCompressor(stream, laz)
+        compressor.compress_many(content)
+        compressor.done()
+    except lazrs.LazrsError as error:
+        raise _not_compressible(path, record.point_format.id, error) from error
+
+
+def _not_compressible(path: Any, point_format: int, error: Exception) -> OutputFileError:
+    return OutputFileError(
+        f"{path}: points of format {point_format} cannot be written as LAZ ({error}); write .las."
+    )
+
+
+def _tell_of_waveforms(name: str, layout: LasLayout) -> None:
+    if layout.point_format not in _WAVEFORM_FORMATS or layout.waveform_start:
+        return
+    where = "another file (.wdp)" if layout.has_outside_waveforms else "no place the header names"
+    _tell(
+        f"{name}: the points refer to waveforms in {where}; their references are carried, the "
+        "waveform samples themselves are not"
+    )

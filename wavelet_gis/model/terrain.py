@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from wavelet_core import MeshError, Pyramid, TriangleMesh
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
@@ -50,6 +54,12 @@ class Terrain:
     system: CoordinateSystem
     frame: LocalFrame
     vertical_unit: str
+
+    def points_for_errors(self) -> NDArray[np.float64]:
+        """Return every input point of the surface in the working frame, merged ones too."""
+        if isinstance(self.source, PointSource):
+            return self.source.points_for_errors(self.mesh, self.frame)
+        return self.mesh.vertices
 
     def geo_pyramid(self, pyramid: Pyramid) -> GeoPyramid:
         """Return the pyramid with everything that its file must hold.
@@ -106,6 +116,9 @@ def terrain_of_cloud(
     vertical_unit: str | None = None,
     *,
     fault: str = "",
+    duplicates: str = "lowest",
+    max_edge: float | Literal["auto"] | None = None,
+    concave: bool = False,
 ) -> Terrain:
     """Return the terrain of a point cloud that is in memory already.
 
@@ -121,18 +134,38 @@ def terrain_of_cloud(
         Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
     fault : str
         Why there is no CRS, for the warning.
+    duplicates, max_edge, concave
+        See `wavelet_gis.model.cloud_origin.cloud_mesh`.
     """
-    if cloud.n_points < 3:
+    n_points = cloud.n_used
+    if n_points < 3:
         raise InputFileError(
-            f"{name}: the cloud has {cloud.n_points} point{'s' * (cloud.n_points != 1)}; a "
+            f"{name}: the cloud has {n_points} point{'s' * (n_points != 1)}; a "
             "surface needs at least three (check the file, and --classes if given)."
         )
+    _require_plan(name, cloud, system)
     frame, unit = frame_of_bounds(name, system, cloud_bounds(cloud), vertical_unit, fault)
     try:
-        mesh, source = cloud_mesh(cloud, frame)
+        mesh, source = cloud_mesh(
+            cloud, frame, duplicates=duplicates, max_edge=max_edge, concave=concave, name=name
+        )
     except (MeshError, InputFileError) as error:
         raise InputFileError(f"{name}: {error}") from error
     return Terrain(name, mesh, cloud, source, system, frame, unit)
+
+
+def _require_plan(name: str, cloud: PointCloud, system: CoordinateSystem) -> None:
+    """Refuse coordinates from the centre of the earth, where z is no height."""
+    wkt = (system.wkt or "").replace(" ", "")
+    if "GEOCCS[" not in wkt and "CS[Cartesian,3" not in wkt:
+        return
+    middle = cloud.coordinates()[: 1 << 20].mean(axis=0)
+    if 6.2e6 < float(np.linalg.norm(middle)) < 6.5e6:
+        raise CrsError(
+            f"{name}: {system.name} is geocentric, x, y and z are from the centre of the earth and "
+            "z is no height; reproject the points to a projected CRS first (for instance with "
+            "PDAL's filters.reprojection)."
+        )
 
 
 def frame_of_bounds(

@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     mesh = pyramid.mesh(0)
     if not arguments.no_fit and pyramid.parameters["norm"] == "rms":
         mesh = fitted(mesh, terrain.mesh)
-    errors = surface_errors(mesh, terrain.mesh.vertices) / unit
+    errors = surface_errors(mesh, terrain.points_for_errors()) / unit
     covered = errors[np.isfinite(errors)]
     geo = GeoPyramid(
         pyramid=pyramid,
