@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from .._validate import FloatArray, IntArray
 from ..errors import MeshError, OptionError
 
-__all__ = ["GAP_FACTOR", "area_share", "faces_within", "gap_length"]
+__all__ = ["GAP_FACTOR", "area_share", "faces_within", "gap_length", "point_spacing"]
 
 #: An edge this many times as long as the spacing that 95 % of the points keep spans a gap.
 GAP_FACTOR = 5.0
@@ -77,11 +77,35 @@ def faces_within(
 
 def area_share(plan: FloatArray, faces: IntArray, max_edge: float) -> float:
     """Return the share of the triangulated area in faces with an edge longer than `max_edge`."""
-    a, b, c = (plan[faces[:, k]] for k in range(3))
-    areas = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    areas = _doubled_areas(plan, faces)
     is_gap = (_edge_lengths(plan, faces) > max_edge).any(axis=1)
-    total = float(np.abs(areas).sum())
-    return float(np.abs(areas[is_gap]).sum()) / total if total else 0.0
+    total = float(areas.sum())
+    return float(areas[is_gap].sum()) / total if total else 0.0
+
+
+def point_spacing(plan: FloatArray, faces: IntArray, max_edge: float) -> float:
+    """Return the side of the square that one point has to itself, gaps left out.
+
+    Parameters
+    ----------
+    plan : ndarray, shape (n_points, 2)
+        Horizontal coordinates.
+    faces : ndarray of int, shape (n_faces, 3)
+        Their Delaunay faces.
+    max_edge : float
+        A longer edge spans a gap, as `gap_length` gives it.
+    """
+    within = faces[(_edge_lengths(plan, faces) <= max_edge).all(axis=1)]
+    if len(within) == 0:
+        within = faces
+    area = float(_doubled_areas(plan, within).sum()) / 2
+    return float(np.sqrt(area / len(np.unique(within))))
+
+
+def _doubled_areas(plan: FloatArray, faces: IntArray) -> FloatArray:
+    a, b, c = (plan[faces[:, k]] for k in range(3))
+    doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    return np.abs(doubled)
 
 
 def _edge_lengths(plan: FloatArray, faces: IntArray) -> FloatArray:

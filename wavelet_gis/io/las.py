@@ -21,6 +21,7 @@ from wavelet_gis.errors import CrsWarning, InputFileError, OutputFileError, Poin
 from wavelet_gis.io import las_block, laz_decoder
 from wavelet_gis.io.las_header import (
     LARGEST_COORDINATE,
+    RECORD_LENGTHS,
     LasLayout,
     laszip_record,
     parse_layout,
@@ -161,11 +162,14 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
     """
     was = parse_layout("the stored LAS header", cloud.header.tobytes())
     layout = las_block.rebuilt(was)
-    for attribute in cloud.attributes:
-        if attribute.dimension == HEIGHT_ABOVE_GROUND and not _has_dimension(layout, attribute):
-            layout = las_block.described(layout, attribute.name, "Height above ground")
     record = _record_of(cloud, layout)
-    compressor = _laz_record(path, record) if Path(path).suffix.lower() == ".laz" else None
+    content = np.ascontiguousarray(record.array).view(np.uint8).reshape(cloud.n_points, -1)
+    for attribute in cloud.attributes:
+        if attribute.dimension == HEIGHT_ABOVE_GROUND and not _has_dimension(record, attribute):
+            layout = las_block.described(layout, attribute.name, "Height above ground")
+            heights = attribute.values.astype("<f4").reshape(-1, 1).view(np.uint8)
+            content = np.hstack([content, heights])
+    compressor = _laz_record(path, layout) if Path(path).suffix.lower() == ".laz" else None
     if compressor is not None:
         layout = las_block.rebuilt(layout, laszip=bytes(compressor.record_data()))
     block, tail = layout.block, cloud.evlrs.tobytes()
@@ -173,11 +177,13 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
         block = las_block.with_counts(block, cloud, _return_numbers(record))
     with open(path, "wb") as stream:
         stream.write(block)
-        _write_points(path, stream, record, compressor)
+        _write_points(path, stream, content.reshape(-1), layout.point_format, compressor)
         end = stream.seek(0, os.SEEK_END)
         stream.write(tail)
         stream.seek(0)
         stream.write(las_block.moved(block, was, tail, cloud.evlrs_at, end))
+    if compressor is not None:
+        _verify(path, layout, content)
 
 
 def _laspy() -> Any:
@@ -479,9 +485,8 @@ def _put(record: PackedPointRecord, attribute: PointAttribute) -> None:
     record[attribute.dimension] = np.minimum(attribute.values, largest)
 
 
-def _has_dimension(layout: LasLayout, attribute: PointAttribute) -> bool:
-    names = _laspy_header("the stored LAS header", layout).point_format.dimension_names
-    return attribute.name in list(names)
+def _has_dimension(record: PackedPointRecord, attribute: PointAttribute) -> bool:
+    return attribute.name in list(record.point_format.dimension_names)
 
 
 def _record_of(cloud: PointCloud, layout: LasLayout) -> PackedPointRecord:
@@ -494,7 +499,8 @@ def _record_of(cloud: PointCloud, layout: LasLayout) -> PackedPointRecord:
     for k, axis in enumerate("XYZ"):
         record.array[axis] = cloud.integers[:, k]
     for attribute in cloud.attributes:
-        _put(record, attribute)
+        if attribute.dimension != HEIGHT_ABOVE_GROUND or _has_dimension(record, attribute):
+            _put(record, attribute)
     return record
 
 
@@ -502,7 +508,7 @@ def _return_numbers(record: PackedPointRecord) -> NDArray[np.integer]:
     return np.array(record["return_number"])
 
 
-def _laz_record(path: str | os.PathLike[str], record: PackedPointRecord) -> Any:
+def _laz_record(path: str | os.PathLike[str], layout: LasLayout) -> Any:
     """Return lazrs' record on the compression of such points."""
     try:
         import lazrs
@@ -510,17 +516,20 @@ def _laz_record(path: str | os.PathLike[str], record: PackedPointRecord) -> Any:
         raise MissingDependencyError(
             f"{path}: writing LAZ needs lazrs; install it with 'pip install lazrs'."
         ) from error
-    form = record.point_format
+    n_extra = layout.record_length - RECORD_LENGTHS[layout.point_format]
     try:
-        return lazrs.LazVlr.new_for_compression(form.id, form.num_extra_bytes)
+        return lazrs.LazVlr.new_for_compression(layout.point_format, n_extra)
     except lazrs.LazrsError as error:
-        raise _not_compressible(path, form.id, error) from error
+        raise _not_compressible(path, layout.point_format, error) from error
 
 
 def _write_points(
-    path: str | os.PathLike[str], stream: BinaryIO, record: PackedPointRecord, laz: Any
+    path: str | os.PathLike[str],
+    stream: BinaryIO,
+    content: NDArray[np.uint8],
+    point_format: int,
+    laz: Any,
 ) -> None:
-    content = np.ascontiguousarray(record.array).view(np.uint8)
     if laz is None:
         stream.write(content.data)
         return
@@ -532,12 +541,33 @@ def _write_points(
         compressor.compress_many(content)
         compressor.done()
     except lazrs.LazrsError as error:
-        raise _not_compressible(path, record.point_format.id, error) from error
+        raise _not_compressible(path, point_format, error) from error
 
 
-def _not_compressible(path: Any, point_format: int, error: Exception) -> OutputFileError:
+def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np.uint8]) -> None:
+    """Read compressed points back: lazrs loses some waveform references without a word."""
+    back = np.empty_like(content)
+    job = laz_decoder.Job(
+        path=os.fspath(path),
+        start=layout.points_start,
+        record=laszip_record(os.fspath(path), layout).data,
+        record_length=content.shape[1],
+        n_points=len(content),
+    )
+    try:
+        laz_decoder.decoded(job, back)
+    except laz_decoder.DecodeError as error:
+        raise _not_compressible(path, layout.point_format, error) from error
+    if not np.array_equal(back, content):
+        n_other = int(np.count_nonzero((back != content).any(axis=1)))
+        raise _not_compressible(
+            path, layout.point_format, f"{n_other} of {len(content)} points come back changed"
+        )
+
+
+def _not_compressible(path: Any, point_format: int, why: object) -> OutputFileError:
     return OutputFileError(
-        f"{path}: points of format {point_format} cannot be written as LAZ ({error}); write .las."
+        f"{path}: points of format {point_format} cannot be written as LAZ ({why}); write .las."
     )
 
 

@@ -48,10 +48,24 @@ TailPlace = int | None
 
 
 def for_laspy(layout: LasLayout) -> bytes:
-    """Return the block with the number of VLRs that it really holds, for laspy to read."""
-    block = bytearray(layout.block)
-    struct.pack_into("<I", block, SIZES + 6, len(layout.vlrs))
-    return bytes(block)
+    """Return the header with the one record that laspy needs: that on the extra dimensions.
+
+    Names and descriptions in another encoding than UTF-8 are written in ASCII, since laspy refuses
+    them; the block that is kept still has them as they came.
+    """
+    records = []
+    for record in layout.vlrs:
+        if not _is_extra_bytes(record):
+            continue
+        data = bytearray(layout.block[record.data_start : record.end])
+        for start in range(0, len(data) - _DESCRIPTION + 1, _DESCRIPTION):
+            for text in (slice(start + 4, start + 36), slice(start + 160, start + 192)):
+                data[text] = bytes(byte if byte < 128 else ord("?") for byte in data[text])
+        records.append(_vlr(b"LASF_Spec", 4, bytes(data), b""))
+    block = bytearray(layout.block[: layout.header_size])
+    n_bytes = layout.header_size + sum(map(len, records))
+    struct.pack_into("<II", block, SIZES + 2, n_bytes, len(records))
+    return bytes(block) + b"".join(records)
 
 
 def tail_of(content: bytes, start: int, layout: LasLayout) -> tuple[bytes, TailPlace, str]:

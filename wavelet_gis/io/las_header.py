@@ -18,6 +18,7 @@ from wavelet_gis.errors import InputFileError
 
 __all__ = [
     "LARGEST_COORDINATE",
+    "RECORD_LENGTHS",
     "LasLayout",
     "LaszipRecord",
     "Record",

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
-from wavelet_core.mesh.gaps import area_share, faces_within, gap_length
+from wavelet_core.mesh.gaps import area_share, faces_within, gap_length, point_spacing
 from wavelet_core.mesh.triangulation import delaunay_faces
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError, PointCloudWarning
@@ -61,6 +61,9 @@ class PointSource:
     shifts : (n_shifted, 2) int64
         Vertices whose height is the mean of several points, and what the stored Z of their own
         point is above it.
+    spacing : float or None
+        Side of the square that one point has to itself, in the working frame; None in a pyramid
+        of before this was stored.
     """
 
     cloud: PointCloud
@@ -74,6 +77,7 @@ class PointSource:
     aside: Aside = _NOTHING_ASIDE
     duplicates: str = "lowest"
     shifts: NDArray[np.int64] = field(default_factory=_NO_SHIFTS.copy)
+    spacing: float | None = None
 
     kind = "points"
 
@@ -289,6 +293,7 @@ class PointSource:
             "carried": list(cloud.carried),
             "checksum": self.checksum,
             "duplicates": self.duplicates,
+            "spacing": self.spacing,
             "evlrs_at": cloud.evlrs_at,
         }
         arrays: dict[str, NDArray[Any]] = {
@@ -369,6 +374,7 @@ class PointSource:
             aside=Aside.from_arrays(arrays, attributes, n_points),
             duplicates=str(fields.get("duplicates", "lowest")),
             shifts=arrays.get("source/shifts", _NO_SHIFTS),
+            spacing=_length(fields.get("spacing")),
         )
         source._check()
         return source
@@ -473,7 +479,9 @@ def cloud_mesh(
     if duplicates == "mean":
         vertices[:, 2] = frame.local_z(stored * cloud.scales[2] + cloud.offsets[2])
     faces = delaunay_faces(vertices[:, :2])
-    faces = _without_gaps(name, vertices[:, :2], faces, max_edge, concave)
+    gap = gap_length(vertices[:, :2], faces)
+    source = replace(source, spacing=point_spacing(vertices[:, :2], faces, gap))
+    faces = _without_gaps(name, vertices[:, :2], faces, gap, max_edge, concave)
     _tell_of_merging(name, source)
     return TriangleMesh(vertices, faces, attributes, names), source
 
@@ -482,10 +490,10 @@ def _without_gaps(
     name: str,
     plan: NDArray[np.float64],
     faces: NDArray[np.int64],
+    gap: float,
     max_edge: float | Literal["auto"] | None,
     concave: bool,
 ) -> NDArray[np.int64]:
-    gap = gap_length(plan, faces)
     if max_edge is None and not concave:
         share = area_share(plan, faces, 2 * gap)
         if share > TOLD_GAPS:
@@ -510,8 +518,8 @@ def _tell_of_merging(name: str, source: PointSource) -> None:
     if merged.n_points:
         _tell(
             f"{name}: {merged.n_points} points share x and y with others; "
-            f"{_WORDS_OF_RULE[merged.rule]} stands for them, up to {merged.largest:.4g} off (root mean square "
-            f"{merged.rms:.4g}) (--duplicates)"
+            f"{_WORDS_OF_RULE[merged.rule]} stands for them, up to {merged.largest:.4g} off "
+            f"(root mean square {merged.rms:.4g}) (--duplicates)"
         )
 
 
@@ -530,6 +538,15 @@ def _tell(message: str) -> None:
 def _int32(values: NDArray[np.int64]) -> NDArray[np.int32]:
     limits = np.iinfo(np.int32)
     return np.clip(values, limits.min, limits.max).astype(np.int32)
+
+
+def _length(value: object) -> float | None:
+    """Return a length, checked as one."""
+    if value is None:
+        return None
+    if not isinstance(value, float) or not 0 < value < math.inf:
+        raise ValueError("a length that is none")
+    return value
 
 
 def _offset(value: object) -> int | None:
