@@ -299,7 +299,7 @@ def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> No
                 "offsets in the header are wrong, or the file is damaged: get it again."
             )
         # Many writers round the bounds, to a unit in the last place or to the next number.
-        slack = 1.5 * abs(layout.scales[k]) + 1e-9 * max(-low, high) + 0.01 * (high - low)
+        slack = 1.5 * abs(layout.scales[k]) + 1e-9 * max(-low, high) + 5e-4 * (high - low)
         told = layout.low[k], layout.high[k]
         if not (abs(told[0] - low) <= slack and abs(told[1] - high) <= slack):
             _tell(
