@@ -112,7 +112,9 @@ def las_bases(folder: Path) -> list[Base]:
             header = laspy.LasHeader(version=version, point_format=point_format)
             header.scales, header.offsets = [0.01] * 3, [500000.0, 5100000.0, 0.0]
             if version == "1.4":
-                header.add_extra_dim(laspy.ExtraBytesParams("range", "i2", scales=[0.5], offsets=[1.0]))
+                header.add_extra_dim(
+                    laspy.ExtraBytesParams("range", "i2", scales=[0.5], offsets=[1.0])
+                )
             from pyproj import CRS
 
             header.add_crs(CRS.from_epsg(25832))

@@ -193,19 +193,24 @@ def _table_offset(job: Job, stream: BinaryIO, size: int) -> int:
 
 
 def _check_layers(job: Job, stream: BinaryIO, chunks: list[tuple[int, int]]) -> None:
-    """Hold the sizes of each chunk's layers against the chunk's own."""
+    """Hold the sizes of each chunk's layers against the chunk's own, and the points they hold."""
     n_layers = _n_layers(job.record)
-    start = job.start + 8
-    for n_points, length in chunks:
-        if n_points and length:
+    start, n_there = job.start + 8, 0
+    for _, length in chunks:
+        if length:
             head = job.record_length + 4 + 4 * n_layers
             if length < head:
                 raise DecodeError("one of its chunks is shorter than its own head")
-            stream.seek(start + job.record_length + 4)
-            sizes = struct.unpack(f"<{n_layers}I", _exactly(stream, 4 * n_layers))
+            stream.seek(start + job.record_length)
+            n_here, *sizes = struct.unpack(f"<{n_layers + 1}I", _exactly(stream, 4 * n_layers + 4))
+            n_there += n_here
             if head + sum(sizes) > length:
                 raise DecodeError("the layers of one of its chunks are longer than the chunk")
         start += length
+    if n_there != job.n_points:
+        raise DecodeError(
+            f"the header announces {job.n_points} points, the compressed chunks hold {n_there}"
+        )
 
 
 def _n_layers(record: bytes) -> int:
