@@ -363,7 +363,8 @@ def _aside(
         )
     _tell(
         f"{name}: {n_aside} of {len(aside)} points are left out of the surface "
-        f"({' and '.join(parts)}); they are carried along, {' and '.join(flags)} lets them in"
+        f"({' and '.join(parts)}); they are carried along, {' and '.join(flags)} "
+        f"let{'s' * (len(flags) == 1)} them in"
     )
     return aside
 
