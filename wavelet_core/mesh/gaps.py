@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
@@ -10,14 +12,32 @@ from scipy.sparse.csgraph import connected_components
 from .._validate import FloatArray, IntArray
 from ..errors import MeshError, OptionError
 
-__all__ = ["GAP_FACTOR", "area_share", "faces_within", "gap_length", "point_spacing"]
+__all__ = ["GAP_FACTOR", "PointGaps", "faces_within", "gaps_of"]
 
 #: An edge this many times as long as the spacing that 95 % of the points keep spans a gap.
 GAP_FACTOR = 5.0
 
+_BLOCK = 1 << 20
 
-def gap_length(plan: FloatArray, faces: IntArray) -> float:
-    """Return the length from which an edge of a Delaunay triangulation spans a gap.
+
+class PointGaps(NamedTuple):
+    """How densely points lie, and where they do not.
+
+    length : float
+        An edge from this length on spans a gap.
+    spacing : float
+        Side of the square that one point has to itself, gaps left out.
+    share : float
+        Part of the triangulated area in faces with an edge of more than twice `length`.
+    """
+
+    length: float
+    spacing: float
+    share: float
+
+
+def gaps_of(plan: FloatArray, faces: IntArray) -> PointGaps:
+    """Return how densely scattered points lie.
 
     Parameters
     ----------
@@ -28,15 +48,36 @@ def gap_length(plan: FloatArray, faces: IntArray) -> float:
 
     Notes
     -----
-    **Our choice:** `GAP_FACTOR` times the 95th percentile of the distance from a point to its
-    nearest neighbour, which is the shortest of its Delaunay edges.
+    **Our choice:** an edge spans a gap from `GAP_FACTOR` times the 95th percentile of the distance
+    between a point and its nearest neighbour, which is the shortest of its Delaunay edges. In dense
+    forest, and on tiles with the usual overlaps, that leaves less than 1 % of the area; of towns
+    with canals the water.
     """
-    lengths = _edge_lengths(plan, faces)
     nearest = np.full(len(plan), np.inf)
-    for k in range(3):
-        np.minimum.at(nearest, faces[:, k], lengths[:, k])
-        np.minimum.at(nearest, faces[:, (k + 1) % 3], lengths[:, k])
-    return GAP_FACTOR * float(np.percentile(nearest[np.isfinite(nearest)], 95))
+    longest, areas = np.empty(len(faces)), np.empty(len(faces))
+    for start in range(0, len(faces), _BLOCK):
+        block = faces[start : start + _BLOCK]
+        corners = plan[block]
+        sides = np.roll(corners, -1, axis=1) - corners
+        lengths = np.hypot(sides[..., 0], sides[..., 1])
+        for k in range(3):
+            np.minimum.at(nearest, block[:, k], lengths[:, k])
+            np.minimum.at(nearest, block[:, (k + 1) % 3], lengths[:, k])
+        here = slice(start, start + len(block))
+        longest[here] = lengths.max(axis=1)
+        doubled = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
+        areas[here] = np.abs(doubled) / 2
+    length = GAP_FACTOR * float(np.percentile(nearest[np.isfinite(nearest)], 95))
+    is_dense = longest <= length
+    if not is_dense.any():  # a handful of points
+        is_dense[:] = True
+    is_used = np.zeros(len(plan), dtype=bool)
+    is_used[faces[is_dense]] = True
+    return PointGaps(
+        length=length,
+        spacing=float(np.sqrt(areas[is_dense].sum() / np.count_nonzero(is_used))),
+        share=float(areas[longest > 2 * length].sum() / areas.sum()),
+    )
 
 
 def faces_within(
@@ -65,7 +106,7 @@ def faces_within(
     """
     if not max_edge > 0:
         raise OptionError(f"max_edge must be a length above 0, and is {max_edge}.")
-    is_long = _edge_lengths(plan, faces) > max_edge
+    is_long = _is_long(plan, faces, max_edge)
     gone = _open_to_outside(faces, is_long, len(plan)) if from_outline else is_long.any(axis=1)
     if gone.all():
         raise MeshError(
@@ -75,43 +116,14 @@ def faces_within(
     return faces[~gone]
 
 
-def area_share(plan: FloatArray, faces: IntArray, max_edge: float) -> float:
-    """Return the share of the triangulated area in faces with an edge longer than `max_edge`."""
-    areas = _doubled_areas(plan, faces)
-    is_gap = (_edge_lengths(plan, faces) > max_edge).any(axis=1)
-    total = float(areas.sum())
-    return float(areas[is_gap].sum()) / total if total else 0.0
-
-
-def point_spacing(plan: FloatArray, faces: IntArray, max_edge: float) -> float:
-    """Return the side of the square that one point has to itself, gaps left out.
-
-    Parameters
-    ----------
-    plan : ndarray, shape (n_points, 2)
-        Horizontal coordinates.
-    faces : ndarray of int, shape (n_faces, 3)
-        Their Delaunay faces.
-    max_edge : float
-        A longer edge spans a gap, as `gap_length` gives it.
-    """
-    within = faces[(_edge_lengths(plan, faces) <= max_edge).all(axis=1)]
-    if len(within) == 0:
-        within = faces
-    area = float(_doubled_areas(plan, within).sum()) / 2
-    return float(np.sqrt(area / len(np.unique(within))))
-
-
-def _doubled_areas(plan: FloatArray, faces: IntArray) -> FloatArray:
-    a, b, c = (plan[faces[:, k]] for k in range(3))
-    doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    return np.abs(doubled)
-
-
-def _edge_lengths(plan: FloatArray, faces: IntArray) -> FloatArray:
-    """Return the length of each face's edges, the k-th from corner k to the next."""
-    sides = plan[np.roll(faces, -1, axis=1)] - plan[faces]
-    return np.hypot(sides[..., 0], sides[..., 1])
+def _is_long(plan: FloatArray, faces: IntArray, max_edge: float) -> NDArray[np.bool_]:
+    """Return which edges of the faces are longer, the k-th from corner k to the next."""
+    is_long = np.empty((len(faces), 3), dtype=bool)
+    for start in range(0, len(faces), _BLOCK):
+        corners = plan[faces[start : start + _BLOCK]]
+        sides = np.roll(corners, -1, axis=1) - corners
+        is_long[start : start + _BLOCK] = np.hypot(sides[..., 0], sides[..., 1]) > max_edge
+    return is_long
 
 
 def _open_to_outside(

@@ -205,7 +205,7 @@ def moved(block: bytes, layout: LasLayout, tail: bytes, was_at: TailPlace, is_at
     if layout.minor >= 4:
         start, announced = struct.unpack_from("<QI", block, EVLRS)
         first = 0 if was_at is None else start - was_at
-        if announced and (was_at != is_at or first >= len(tail)):
+        if announced and start and (was_at != is_at or first >= len(tail)):
             n_evlrs = len(list(records_of(tail, first, announced, extended=True)))
             struct.pack_into("<QI", told, EVLRS, is_at + first if n_evlrs else 0, n_evlrs)
     if layout.waveform_start and was_at is not None and was_at != is_at:

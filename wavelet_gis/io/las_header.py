@@ -310,7 +310,7 @@ def records_of(block: bytes, start: int, count: int, *, extended: bool) -> Itera
     """
     head = _EVLR_HEADER if extended else _VLR_HEADER
     for _ in range(count):
-        if start + head.size > len(block):
+        if not 0 <= start <= len(block) - head.size:
             return
         _, user_id, record_id, length, _ = head.unpack_from(block, start)
         end = start + head.size + length
@@ -386,7 +386,11 @@ def _with_what_follows(
         (waveform_start,) = struct.unpack_from("<Q", block, WAVEFORM)
     if minor >= 4:
         evlr_start, n_evlrs = struct.unpack_from("<QI", block, EVLRS)
-        evlr_start = evlr_start if n_evlrs else 0
+        if n_evlrs and not evlr_start:
+            notes.append(
+                f"the header announces {n_evlrs} EVLRs and no place for them; none is read"
+            )
+        n_evlrs, evlr_start = (n_evlrs, evlr_start) if n_evlrs and evlr_start else (0, 0)
     if size is None:
         return replace(
             layout,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
-from wavelet_core.mesh.gaps import area_share, faces_within, gap_length, point_spacing
+from wavelet_core.mesh.gaps import PointGaps, faces_within, gaps_of
 from wavelet_core.mesh.triangulation import delaunay_faces
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError, PointCloudWarning
@@ -438,7 +438,7 @@ def cloud_mesh(
     max_edge : float or "auto", optional
         Leave faces with a longer edge out, as gaps of the cloud; in the working frame's unit,
         which is that of x and y, or the metre for a geographic CRS. "auto" is
-        `wavelet_core.mesh.gaps.gap_length`. By default the convex hull is filled.
+        the length of `wavelet_core.mesh.gaps.gaps_of`. By default the convex hull is filled.
     concave : bool
         Leave out only what such edges open to the outside; with max_edge "auto" if none is given.
     name : str
@@ -479,9 +479,9 @@ def cloud_mesh(
     if duplicates == "mean":
         vertices[:, 2] = frame.local_z(stored * cloud.scales[2] + cloud.offsets[2])
     faces = delaunay_faces(vertices[:, :2])
-    gap = gap_length(vertices[:, :2], faces)
-    source = replace(source, spacing=point_spacing(vertices[:, :2], faces, gap))
-    faces = _without_gaps(name, vertices[:, :2], faces, gap, max_edge, concave)
+    gaps = gaps_of(vertices[:, :2], faces)
+    source = replace(source, spacing=gaps.spacing)
+    faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
     _tell_of_merging(name, source)
     return TriangleMesh(vertices, faces, attributes, names), source
 
@@ -490,19 +490,18 @@ def _without_gaps(
     name: str,
     plan: NDArray[np.float64],
     faces: NDArray[np.int64],
-    gap: float,
+    gaps: PointGaps,
     max_edge: float | Literal["auto"] | None,
     concave: bool,
 ) -> NDArray[np.int64]:
     if max_edge is None and not concave:
-        share = area_share(plan, faces, 2 * gap)
-        if share > TOLD_GAPS:
+        if gaps.share > TOLD_GAPS:
             _tell(
-                f"{name}: gaps between the points take {share:.0%} of the area and are closed by "
-                f"long triangles; --max-edge auto (here {gap:.4g}) leaves them out"
+                f"{name}: gaps between the points take {gaps.share:.0%} of the area and are closed "
+                f"by long triangles; --max-edge auto (here {gaps.length:.4g}) leaves them out"
             )
         return faces
-    length = gap if max_edge is None or max_edge == "auto" else float(max_edge)
+    length = gaps.length if max_edge is None or max_edge == "auto" else float(max_edge)
     within = faces_within(plan, faces, length, from_outline=concave)
     n_alone = len(plan) - len(np.unique(within))
     _tell(

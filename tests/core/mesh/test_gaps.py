@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from wavelet_core import MeshError, OptionError, TriangleMesh, analyse
 from wavelet_core.accuracy.level_errors import level_errors
-from wavelet_core.mesh.gaps import area_share, faces_within, gap_length, point_spacing
+from wavelet_core.mesh.gaps import faces_within, gaps_of
 from wavelet_core.mesh.triangulation import delaunay_faces
 
 
@@ -59,11 +59,13 @@ def test_from_the_outline_a_bay_opens_and_a_lake_stays_closed():
 def test_the_length_of_a_gap_comes_from_the_spacing():
     plan = grid_points(bay)
     faces = delaunay_faces(plan)
-    gap = gap_length(plan, faces)
-    assert 4.0 < gap < 5.5
-    assert 0.1 < area_share(plan, faces, gap) < 0.4
-    assert point_spacing(plan, faces, gap) == pytest.approx(1.0, abs=0.1)
-    assert gap_length(7 * plan, faces) == pytest.approx(7 * gap)
+    gaps = gaps_of(plan, faces)
+    assert 4.0 < gaps.length < 5.5
+    assert 0.1 < gaps.share < 0.4
+    assert gaps.spacing == pytest.approx(1.0, abs=0.1)
+    assert gaps_of(7 * plan, faces) == pytest.approx(
+        (7 * gaps.length, 7 * gaps.spacing, gaps.share)
+    )
 
 
 @pytest.mark.parametrize("max_edge", [0, -1, float("nan")])
@@ -86,7 +88,7 @@ def test_whatever_is_left_can_be_analysed(seed, factor, from_outline):
     plan = np.concatenate([rng.normal(c, 3, (40, 2)) for c in rng.uniform(0, 60, (4, 2))])
     faces = delaunay_faces(plan)
     within = faces_within(
-        plan, faces, factor * point_spacing(plan, faces, gap_length(plan, faces)) * 2,
+        plan, faces, factor * gaps_of(plan, faces).spacing * 2,
         from_outline=from_outline,
     )  # fmt: skip
     mesh = TriangleMesh(np.column_stack([plan, rng.normal(size=len(plan))]), within)

@@ -2,6 +2,7 @@
 
 import struct
 import time
+import warnings
 
 import numpy as np
 import pytest
@@ -51,6 +52,30 @@ def test_more_evlrs_than_there_is_room_for(tmp_path, count):
 def test_evlrs_that_are_not_behind_the_points(tmp_path, start):
     parts = {"evlrs": (record(b"x", 1, b"12", extended=True),)}
     assert f"begin at byte {start}" in refusal(tmp_path, damaged(235, "Q", start, 4, 6, **parts))
+
+
+@pytest.mark.parametrize("suffix", ["las", "laz"])
+def test_evlrs_without_a_place(tmp_path, suffix):
+    """A count in the header and an offset of 0: found by `tests/tools/mutate.py`."""
+    path = tmp_path / f"a.{suffix}"
+    path.write_bytes(damaged(243, "I", 1, 4, 6))
+    if suffix == "laz":
+        (tmp_path / "b.las").write_bytes(las_bytes(4, 6))
+        write_cloud(path, read_cloud(tmp_path / "b.las")[0])
+        content = bytearray(path.read_bytes())
+        struct.pack_into("<I", content, 243, 7)
+        path.write_bytes(content)
+    with pytest.warns(PointCloudWarning, match="no place for them"):
+        cloud, _ = read_cloud(path)
+    write_cloud(tmp_path / "back.las", cloud)
+    again, _ = read_cloud_quietly(tmp_path / "back.las")
+    assert (again.integers == cloud.integers).all()
+
+
+def read_cloud_quietly(path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return read_cloud(path)
 
 
 def test_an_evlr_longer_than_the_file_is_told_of(tmp_path):
