@@ -210,8 +210,8 @@ def case(bases: list[Base], seed: int, number: int) -> tuple[bytes, bool, int]:
     return (*mutated(bases[k], rng), k)
 
 
-def run(kind_name: str, seed: int, numbers: range) -> list[dict[str, Any]]:
-    """Return the outcomes of some files, however often the worker dies."""
+def run(kind_name: str, seed: int, numbers: range, *, again: bool = False) -> list[dict[str, Any]]:
+    """Return the outcomes of some files, however often the worker dies; hangs are tried twice."""
     outcomes: list[dict[str, Any]] = []
     while len(numbers):
         with tempfile.TemporaryFile() as chatter:
@@ -225,7 +225,10 @@ def run(kind_name: str, seed: int, numbers: range) -> list[dict[str, Any]]:
         number = fault["number"]
         if number is None:
             raise RuntimeError("the worker dies before its first file")
-        outcomes.append(fault)
+        if fault["what"] == "hang" and not again:  # or the machine is busy
+            outcomes += run(kind_name, seed, range(number, number + 1), again=True)
+        else:
+            outcomes.append(fault)
         numbers = range(number + 1, numbers.stop)
     return outcomes
 
@@ -251,7 +254,6 @@ def _listen(worker: subprocess.Popen[bytes]) -> tuple[list[dict[str, Any]], dict
                 if line["seconds"] > SECONDS:
                     line["what"] = "hang"
                 done.append(line)
-                current = None if line is None else current
     code = worker.wait()
     if code == 0:
         return done, None

@@ -12,6 +12,7 @@ in this process, after the same checks of the table of chunks.
 from __future__ import annotations
 
 import os
+import signal
 import struct
 import subprocess
 import sys
@@ -34,8 +35,14 @@ MAX_THREADS = 8
 #: Address space of the child, in bytes: what a batch needs a hundred times over.
 MEMORY, MEMORY_THREADED = 1 << 30, 4 << 30
 
-#: Seconds that a child has, and points a second that the slowest machine decodes.
-PATIENCE, POINTS_A_SECOND = 8.0, 50_000
+#: Seconds of the processor that a child has, and points a second that the slowest one decodes.
+PATIENCE, POINTS_A_SECOND = 8, 50_000
+
+#: The clock on the wall may show this many times more: the machine may be busy.
+BUSY = 8.0
+
+#: The signal that ends a process whose time is up; Windows has none.
+_SIGXCPU = int(getattr(signal, "SIGXCPU", 0))
 
 #: Kinds of compression.
 POINTWISE, LAYERED = 1, 3
@@ -261,7 +268,7 @@ def _in_a_child(python: str, job: Job, view: memoryview) -> None:
         assert child.stderr is not None
         said: list[bytes] = []
         listener = threading.Thread(target=_listen, args=(child.stderr, said), daemon=True)
-        clock = threading.Timer(PATIENCE + job.n_points / POINTS_A_SECOND, child.kill)
+        clock = threading.Timer(BUSY * _seconds(job), child.kill)
         listener.start()
         clock.start()
         try:
@@ -277,6 +284,7 @@ def _in_a_child(python: str, job: Job, view: memoryview) -> None:
             clock.cancel()
             with suppress(OSError):
                 child.kill()
+            is_late |= child.wait() == -_SIGXCPU
         listener.join(timeout=1.0)
     if not is_whole:
         raise DecodeError(_what_happened(b"".join(said), is_late))
@@ -311,8 +319,12 @@ def _n_threads() -> int:
     return min(os.cpu_count() or 1, MAX_THREADS)
 
 
-def _limit_memory(n_bytes: int) -> None:
-    """Bound the address space where the system can: a claim of 34 GB then ends at once."""
+def _seconds(job: Job) -> float:
+    return PATIENCE + job.n_points / POINTS_A_SECOND
+
+
+def _limit(n_bytes: int, seconds: float) -> None:
+    """Bound memory and time where the system can: a claim of 34 GB then ends at once."""
     try:
         import resource
     except ImportError:  # Windows
@@ -322,6 +334,12 @@ def _limit_memory(n_bytes: int) -> None:
         n_bytes = min(n_bytes, hard)
     with suppress(OSError, ValueError):
         resource.setrlimit(resource.RLIMIT_AS, (n_bytes, hard))
+    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    # Of all threads together. One more for the hard limit: the soft one ends with a signal.
+    n_seconds = int(seconds * _n_threads()) + 1
+    if hard == resource.RLIM_INFINITY or hard > n_seconds:
+        with suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_CPU, (n_seconds, n_seconds + 1))
     with suppress(OSError, ValueError):
         resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
 
@@ -330,7 +348,7 @@ def _main(arguments: list[str]) -> int:
     """Decode to standard output: the child's side of `decoded`."""
     home, start, record_length, n_points, record, path = arguments
     job = Job(path, int(start), bytes.fromhex(record), int(record_length), int(n_points))
-    _limit_memory(MEMORY_THREADED if job.n_points >= THREADED else MEMORY)
+    _limit(MEMORY_THREADED if job.n_points >= THREADED else MEMORY, _seconds(job))
     if home:
         sys.path.insert(0, home)
     out = sys.stdout.buffer

@@ -160,11 +160,22 @@ def test_a_decoder_that_waits_is_ended(tmp_path, monkeypatch):
     script = tmp_path / "decoder.py"
     script.write_text(dying("import time; time.sleep(60)"))
     monkeypatch.setattr(laz_decoder, "__file__", str(script))
-    monkeypatch.setattr(laz_decoder, "PATIENCE", 0.5)
+    monkeypatch.setattr(laz_decoder, "PATIENCE", 0.1)
     began = time.perf_counter()
     with pytest.raises(InputFileError, match="too long"):
         read_cloud(laz)
     assert time.perf_counter() - began < 10
+
+
+def test_a_decoder_that_spins_is_ended_by_the_system(tmp_path, monkeypatch):
+    laz = write_las(tmp_path / "a.laz")
+    script = tmp_path / "decoder.py"
+    script.write_text(
+        dying("import resource; resource.setrlimit(resource.RLIMIT_CPU, (1, 2))\nwhile True: pass")
+    )
+    monkeypatch.setattr(laz_decoder, "__file__", str(script))
+    with pytest.raises(InputFileError, match="too long"):
+        read_cloud(laz)
 
 
 @pytest.mark.parametrize("seed", range(12))
