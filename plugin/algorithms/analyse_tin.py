@@ -141,7 +141,8 @@ class AnalyseTin(AnalysisAlgorithm):
 
     def terrain(self, parameters, context, feedback):
         """Return the terrain in the layers."""
-        from wavelet_gis.model.tin import TinTerrain, frame_of_coordinates
+        from wavelet_gis.model.terrain import terrain_of_mesh
+        from wavelet_gis.model.tin import frame_of_coordinates
 
         from ..qgis_io.crs_and_progress import coordinate_system
 
@@ -155,7 +156,7 @@ class AnalyseTin(AnalysisAlgorithm):
             points = self._points(parameters, context, feedback)
             frame, unit = frame_of_coordinates(name, points.xyz, system, unit)
             mesh = self._mesh_of_points(parameters, context, points, frame, feedback)
-        return TinTerrain(name, mesh, system, frame, unit)
+        return terrain_of_mesh(name, mesh, system, frame, unit)
 
     def more_options(self, parameters, context, terrain):
         """Return the locked vertices and the weights of the attributes."""

@@ -204,10 +204,10 @@ class FilterLevels(PyramidAlgorithm):
     def work(self, parameters, context, feedback):
         """Filter, then write what was asked for."""
         from wavelet_gis.workflows.filtering import (
-            change_between,
+            Filtered,
             chosen_gains,
-            denoised_record,
-            scaled_record,
+            denoised,
+            with_level_gains,
         )
 
         from ..parameters import pyramid as pyramids
@@ -217,7 +217,7 @@ class FilterLevels(PyramidAlgorithm):
         geo, results = before, {}
         if self.parameterAsBool(parameters, "DENOISE", context):
             feedback.setProgressText(self.tr("Taking out the noise"))
-            geo, sigmas = denoised_record(
+            geo, sigmas = denoised(
                 geo,
                 self._number(parameters, "SIGMA_OF_NOISE", self.parameterAsDouble, context),
                 channels=self._channels(parameters, context),
@@ -233,13 +233,14 @@ class FilterLevels(PyramidAlgorithm):
         )
         drops_coarse = self.parameterAsBool(parameters, "DROP_COARSE", context)
         if gains or drops_coarse:
-            geo = scaled_record(geo, gains, drops_coarse=drops_coarse)
+            geo = with_level_gains(geo, gains, drop_coarse=drops_coarse)
         require_running(feedback)
         for line in geo.history[len(before.history) :]:
             feedback.pushInfo(line)
-        results["RMS_CHANGE"], results["MAX_CHANGE"] = change_between(before, geo)
-        n_figures = len(results)
         finest = geo.pyramid.synthesise()
+        filtered = Filtered(before, geo, before.pyramid.synthesise(), finest, {}, gains, None)
+        results["RMS_CHANGE"], results["MAX_CHANGE"] = filtered.change()
+        n_figures = len(results)
         path = self.parameterAsFileOutput(parameters, "OUTPUT", context)
         if path:
             geo = geo.with_errors(progress(feedback, 0.7, 0.75))
@@ -248,7 +249,7 @@ class FilterLevels(PyramidAlgorithm):
         results.update(write_restored(self, parameters, context, geo, finest, feedback))
         results.update(self._difference(parameters, context, before, geo, feedback))
         if len(results) == n_figures:
-            raise nothing_written(geo.source.kind)
+            raise nothing_written(geo.origin.kind)
         return results
 
     def _difference(self, parameters, context, before, after, feedback):
@@ -260,7 +261,7 @@ class FilterLevels(PyramidAlgorithm):
         path = self.parameterAsOutputLayer(parameters, "DIFFERENCE", context)
         if not path:
             return {}
-        if before.source.kind != "raster":
+        if before.origin.kind != "raster":
             raise QgsProcessingException(
                 self.tr("A difference of DEMs needs a pyramid that was made from a DEM.")
             )

@@ -67,11 +67,11 @@ class Reconstruct(PyramidAlgorithm):
         feedback.setProgress(60)
         results = write_restored(self, parameters, context, geo, finest, feedback)
         if not results:
-            raise nothing_written(geo.source.kind)
+            raise nothing_written(geo.origin.kind)
         return {"N_VERTICES": finest.n_vertices, "EXACT": _exactness(geo), **results}
 
 
 def _exactness(geo) -> str:
-    if geo.source.is_exact:
+    if geo.origin.is_exact:
         return "yes"
     return "no" if geo.history else "to rounding"

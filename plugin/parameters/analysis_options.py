@@ -28,6 +28,7 @@ PREDICTIONS = (
 )
 UPDATES = ("minimum_norm", "martinez_ortega", "one_ring_mean", "none")
 SIGNALS = ("z", "xyz")
+DEFAULT_BENDING_WEIGHT = 1.0
 VERTICAL_UNITS = ("from the CRS", "metre", "foot", "us_survey_foot")
 
 INTEGER = QgsProcessingParameterNumber.Type.Integer
@@ -134,7 +135,11 @@ def add_design_parameters(algorithm) -> None:
     )
     algorithm.add(
         QgsProcessingParameterNumber(
-            "BENDING_WEIGHT", tr("Weight of bending energy"), DOUBLE, 1.0, minValue=0.0
+            "BENDING_WEIGHT",
+            tr("Weight of bending energy"),
+            DOUBLE,
+            DEFAULT_BENDING_WEIGHT,
+            minValue=0.0,
         ),
         tr("Weight of curvature in the cost of the <i>quadric</i> partition; no unit."),
         advanced=True,
@@ -225,8 +230,12 @@ def design_options(algorithm, parameters, context) -> dict:
     options = {
         **{name: value for name, value in chosen.items() if value not in ("", DEFAULT)},
         "signal": algorithm.parameterAsString(parameters, "SIGNAL", context),
-        "bending_weight": algorithm.parameterAsDouble(parameters, "BENDING_WEIGHT", context),
     }
+    # The dialog, and models that were saved, always say one; only another than its default is a
+    # wish, which the core refuses beside a partition that has no such weight.
+    weight = algorithm.parameterAsDouble(parameters, "BENDING_WEIGHT", context)
+    if weight != DEFAULT_BENDING_WEIGHT:
+        options["bending_weight"] = weight
     if parameters.get("REMOVAL_FRACTION") is not None:
         options["removal_fraction"] = algorithm.parameterAsDouble(
             parameters, "REMOVAL_FRACTION", context

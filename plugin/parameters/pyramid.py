@@ -99,7 +99,7 @@ def add_figure_outputs(algorithm) -> None:
 
 def figures(geo) -> dict:
     """Return sizes and errors of a pyramid whose errors have been computed."""
-    finest, coarsest = geo.errors[0], geo.errors[-1]
+    coarsest, finest = geo.errors[0], geo.errors[-1]
     return {
         "N_LEVELS": geo.pyramid.n_levels,
         "N_VERTICES": finest.n_vertices,
@@ -126,7 +126,7 @@ def level_figures(geo, level: int) -> dict:
 def log_levels(geo, feedback) -> None:
     """Write the table of levels to the log."""
     feedback.pushInfo(tr("level   vertices  triangles  RMSE of surface  largest error"))
-    for errors in geo.errors:
+    for errors in reversed(geo.errors):
         feedback.pushInfo(
             f"{errors.level:5d} {errors.n_vertices:10d} {errors.n_faces:10d} "
             f"{errors.rmse_surface:16.4f} {errors.max_error_surface:14.4f}"

@@ -64,9 +64,9 @@ def write_restored(algorithm, parameters, context, geo, finest, feedback) -> dic
     from . import tin_output
 
     results = {}
-    if geo.source.kind == "raster":
+    if geo.origin.kind == "raster":
         results.update(_write_dem(algorithm, parameters, context, geo, finest, feedback))
-    elif geo.source.kind == "points":
+    elif geo.origin.kind == "points":
         results.update(_write_cloud(algorithm, parameters, context, geo, finest))
     if parameters.get("TIN"):
         results["TIN"] = tin_output.write_tin(
@@ -97,7 +97,7 @@ def _write_dem(algorithm, parameters, context, geo, finest, feedback) -> dict:
     path = algorithm.parameterAsOutputLayer(parameters, "DEM", context)
     if not path:
         return {}
-    dem = geo.source.restore(finest, geo.frame)
+    dem = geo.origin.restore(finest, geo.frame)
     raster_output.write_dem(path, dem, crs_of(geo), feedback)
     styles.style_output(context, path, styles.style_hillshade)
     return {"DEM": path}
@@ -111,5 +111,5 @@ def _write_cloud(algorithm, parameters, context, geo, finest) -> dict:
     if not path:
         return {}
     with new_file(path, overwrite=True) as scratch:
-        write_cloud(scratch, geo.source.restore(finest, geo.frame))
+        write_cloud(scratch, geo.origin.restore(finest, geo.frame))
     return {"POINT_CLOUD": path}

@@ -12,7 +12,7 @@ _show_before = None
 
 @contextmanager
 def shown_in(feedback, wording):
-    """Show the warnings of ``wavelet_gis`` that this thread raises inside the block in its log.
+    """Show the warnings of ours that this thread raises inside the block in its log.
 
     ``wording`` takes a warning and returns what to show.
 
@@ -31,10 +31,12 @@ def shown_in(feedback, wording):
 
 def _install() -> None:
     global _show_before
+    from wavelet_core.errors import WaveletWarning
     from wavelet_gis.errors import TerrainWarning
 
     # Also when the same text comes from the same line again: each run has a log of its own.
     warnings.simplefilter("always", TerrainWarning)
+    warnings.simplefilter("always", WaveletWarning)
     if warnings.showwarning is not _show:
         _show_before = warnings.showwarning
         warnings.showwarning = _show
@@ -49,13 +51,13 @@ def uninstall() -> None:
 
 
 def _show(message, category, filename, lineno, file=None, line=None):
-    from wavelet_core.errors import SlowFallbackWarning
+    from wavelet_core.errors import SlowFallbackWarning, WaveletWarning
     from wavelet_gis.errors import TerrainWarning
 
     feedback, wording = getattr(_feedbacks, "current", None) or (None, None)
     if feedback is not None and issubclass(category, SlowFallbackWarning):
         return  # told already, with the remedy for this platform
-    if feedback is not None and issubclass(category, TerrainWarning):
+    if feedback is not None and issubclass(category, TerrainWarning | WaveletWarning):
         feedback.pushWarning(wording(message))
     elif _show_before is not None:
         _show_before(message, category, filename, lineno, file, line)

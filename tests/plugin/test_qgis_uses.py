@@ -289,13 +289,12 @@ def test_the_choices_are_served_by_the_core(qgis):
     from terrain_wavelets.plugin.parameters import analysis_options as design
     from terrain_wavelets.plugin.parameters import mesh_output
 
-    from wavelet_core.lifting.options import PARTITIONS, SIGNALS
-    from wavelet_core.lifting.prediction import PREDICTIONS
-    from wavelet_core.lifting.update import UPDATES
-    from wavelet_gis.io.meshes import MESH_SUFFIXES
+    from wavelet_core import NORMS, PARTITIONS, PREDICTIONS, SIGNALS, UPDATES
+    from wavelet_gis.io.formats import MESH_SUFFIXES
 
-    assert set(design.PARTITIONS) <= set(PARTITIONS)
-    assert set(design.PREDICTIONS) <= set(PREDICTIONS.values())
-    assert set(design.UPDATES) == set(UPDATES.values())
+    assert set(design.PARTITIONS) == set(PARTITIONS)
+    assert set(design.NORMS) == set(NORMS)
+    assert set(design.PREDICTIONS) == set(PREDICTIONS)
+    assert set(design.UPDATES) == set(UPDATES)
     assert set(design.SIGNALS) == set(SIGNALS)
     assert set(mesh_output.FORMATS) == set(MESH_SUFFIXES)

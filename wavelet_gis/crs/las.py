@@ -84,7 +84,7 @@ def _of_wkt(wkt: str, keys: dict[int, int]) -> Georeference:
         wkt,
         notes=(
             f"the WKT says that z is in {_spaced(stated)}, the GeoTIFF keys in {_spaced(unit)}; "
-            "the WKT holds (say otherwise with --vertical-unit)",
+            "the WKT holds",
         ),
     )
 
@@ -162,7 +162,7 @@ def _tell_of_unit(keys: dict[int, int], crs: CRS, code: int, notes: list[str]) -
         notes.append(
             f"the GeoTIFF keys name EPSG:{code}, which counts in "
             f"{crs.axis_info[0].unit_name}, and say that x and y are in "
-            f"{_spaced(_UNITS[keys[_PROJECTED_UNIT]])}; the former holds (say otherwise with --crs)"
+            f"{_spaced(_UNITS[keys[_PROJECTED_UNIT]])}; the former holds"
         )
 
 

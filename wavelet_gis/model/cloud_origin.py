@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
@@ -15,13 +13,21 @@ from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.gaps import PointGaps, faces_within, gaps_of
 from wavelet_core.mesh.triangulation import delaunay_faces
+from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 from wavelet_gis.model.cloud_aside import Aside, MergedHeights, merged_points
-from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
+from wavelet_gis.model.exact_restore import (
+    ExactColumn,
+    checksum,
+    exact_column,
+    nearest_of_dtype,
+    number_dtype,
+)
+from wavelet_gis.notes import warn
 
-__all__ = ["PointSource", "cloud_mesh"]
+__all__ = ["CloudOrigin", "cloud_mesh"]
 
 #: Gaps that take more than this share of a cloud's area are told of.
 TOLD_GAPS = 0.05
@@ -31,7 +37,7 @@ _NOTHING_ASIDE = Aside(np.empty(0, np.int64), ())
 
 
 @dataclass(frozen=True, slots=True)
-class PointSource:
+class CloudOrigin:
     """How a pyramid's finest mesh becomes the points it was made from.
 
     Attributes
@@ -80,6 +86,8 @@ class PointSource:
     spacing: float | None = None
 
     kind = "points"
+    noun = "point cloud"
+    grid = None
 
     @classmethod
     def from_cloud(
@@ -89,8 +97,8 @@ class PointSource:
         representative: NDArray[np.int64],
         z_of_vertices: NDArray[np.int64] | None = None,
         duplicates: str = "lowest",
-    ) -> PointSource:
-        """Return the source of a cloud, before there is a pyramid (and so without corrections).
+    ) -> CloudOrigin:
+        """Return the origin of a cloud, before there is a pyramid (and so without corrections).
 
         Parameters
         ----------
@@ -131,8 +139,8 @@ class PointSource:
 
     def with_corrections(
         self, cloud: PointCloud, mesh: TriangleMesh, frame: LocalFrame
-    ) -> PointSource:
-        """Return the source that gives `cloud` back exactly from the synthesised `mesh`."""
+    ) -> CloudOrigin:
+        """Return the origin that gives `cloud` back exactly from the synthesised `mesh`."""
         kept = self.vertex_rows()
         originals = [column[kept] for column in cloud.columns()]
         originals[2][self.shifts[:, 0]] -= self.shifts[:, 1].astype(np.int32)
@@ -142,14 +150,19 @@ class PointSource:
         )
         return replace(self, corrections=columns)
 
-    def altered(self) -> PointSource:
-        """Return the source for a pyramid whose coefficients have been changed."""
+    def altered(self) -> CloudOrigin:
+        """Return the origin for a pyramid whose coefficients have been changed."""
         return replace(self, corrections=None)
 
     @property
     def is_exact(self) -> bool:
         """Whether the original comes back bit for bit."""
         return self.corrections is not None
+
+    @property
+    def points(self) -> CloudOrigin:
+        """The points themselves."""
+        return self
 
     @property
     def n_vertices(self) -> int:
@@ -203,7 +216,7 @@ class PointSource:
         Raises
         ------
         PyramidError
-            When the mesh does not have the vertices of the source, or the exact original was
+            When the mesh does not have the vertices of the origin, or the exact original was
             due and the result's checksum is another.
         """
         if mesh.n_vertices != self.n_vertices or mesh.attributes.shape[1] != len(
@@ -319,8 +332,8 @@ class PointSource:
         return fields, arrays
 
     @classmethod
-    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> PointSource:
-        """Return the source that `to_parts` described, every claim checked.
+    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CloudOrigin:
+        """Return the origin that `to_parts` described, every claim checked.
 
         Raises
         ------
@@ -329,38 +342,40 @@ class PointSource:
         """
         try:
             return cls._from_parts(fields, arrays)
-        except (KeyError, TypeError, ValueError, OverflowError) as error:
-            if isinstance(error, PyramidError):
-                raise
+        except PyramidError:
+            raise
+        except (KeyError, TypeError, ValueError) as error:
             raise PyramidError(
                 f"the description of the points is damaged ({error}); analyse the input anew."
             ) from error
 
     @classmethod
-    def _from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> PointSource:
-        n_points = int(fields["n_points"])
-        attributes = tuple(_attribute(described) for described in fields["attributes"])
+    def _from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CloudOrigin:
+        stored = Fields(fields, "the points")
+        n_points = stored.integer("n_points")
+        attributes = tuple(_attribute(described) for described in stored.objects("attributes"))
         cloud = PointCloud(
             integers=np.empty((0, 3), np.int32),
-            scales=np.array(fields["scales"], dtype=np.float64),
-            offsets=np.array(fields["offsets"], dtype=np.float64),
+            scales=np.array(stored.numbers("scales", 3)),
+            offsets=np.array(stored.numbers("offsets", 3)),
             attributes=attributes,
             carried={
-                str(name): arrays[f"source/carried_{k}"] for k, name in enumerate(fields["carried"])
+                name: arrays[f"source/carried_{k}"]
+                for k, name in enumerate(stored.texts("carried"))
             },
             header=arrays["source/header"],
             evlrs=arrays["source/evlrs"],
-            n_in_file=int(fields["n_in_file"]),
-            classes=None if fields["classes"] is None else tuple(map(int, fields["classes"])),
-            evlrs_at=_offset(fields.get("evlrs_at")),
+            n_in_file=stored.integer("n_in_file"),
+            classes=None if stored["classes"] is None else tuple(stored.integers("classes")),
+            evlrs_at=None if fields.get("evlrs_at") is None else stored.integer("evlrs_at"),
         )
         corrections = None
-        if "ledger" in fields:
+        if "ledger" in stored:
             corrections = tuple(
                 ExactColumn.from_parts(f"source/ledger_{k}", column, arrays)
-                for k, column in enumerate(fields["ledger"])
+                for k, column in enumerate(stored.objects("ledger"))
             )
-        source = cls(
+        origin = cls(
             cloud=cloud,
             n_points=n_points,
             dropped=arrays["source/dropped"],
@@ -370,14 +385,14 @@ class PointSource:
                 arrays[f"source/dropped_attribute_{k}"] for k in range(len(attributes))
             ),
             corrections=corrections,
-            checksum=str(fields["checksum"]),
+            checksum=stored.text("checksum", 200),
             aside=Aside.from_arrays(arrays, attributes, n_points),
-            duplicates=str(fields.get("duplicates", "lowest")),
+            duplicates=stored.text("duplicates", 20) if "duplicates" in stored else "lowest",
             shifts=arrays.get("source/shifts", _NO_SHIFTS),
-            spacing=_length(fields.get("spacing")),
+            spacing=None if fields.get("spacing") is None else stored.number("spacing"),
         )
-        source._check()
-        return source
+        origin._check()
+        return origin
 
     def _check(self) -> None:
         cloud, n_dropped = self.cloud, len(self.dropped)
@@ -412,8 +427,11 @@ class PointSource:
             _require(block.ndim == 1 and block.dtype == np.uint8, "header")
         if self.corrections is not None:
             dtypes = [np.dtype(np.int32)] * 3 + [a.values.dtype for a in cloud.attributes]
-            _require(len(self.corrections) == n_columns, "ledger")
-            _require([column.dtype for column in self.corrections] == dtypes, "ledger's data types")
+            _require(len(self.corrections) == n_columns, "corrections")
+            _require(
+                [column.dtype for column in self.corrections] == dtypes,
+                "data types of the corrections",
+            )
 
 
 def cloud_mesh(
@@ -424,7 +442,7 @@ def cloud_mesh(
     max_edge: float | Literal["auto"] | None = None,
     concave: bool = False,
     name: str = "the cloud",
-) -> tuple[TriangleMesh, PointSource]:
+) -> tuple[TriangleMesh, CloudOrigin]:
     """Return the Delaunay TIN of the points in the working frame, and how to come back from it.
 
     Parameters
@@ -465,14 +483,15 @@ def cloud_mesh(
         )
     merged, stored = merged_points(vertices, cloud.integers[used, 2], duplicates)
     kept = merged.kept
-    source = PointSource.from_cloud(cloud, kept, merged.representative, stored, duplicates)
+    origin = CloudOrigin.from_cloud(cloud, kept, merged.representative, stored, duplicates)
     attributes = np.empty((len(kept), len(cloud.attributes)))
     for k, attribute in enumerate(cloud.attributes):
         attributes[:, k] = attribute.lifted()[used][kept]
         if not np.isfinite(attributes[:, k]).all():
             raise InputFileError(
-                f"attribute {attribute.name} has values that are no finite numbers; "
-                "leave it out of --attributes."
+                "attribute {attribute} has values that are no finite numbers; leave it out of {0}.",
+                "attributes",
+                attribute=attribute.name,
             )
     names = tuple(attribute.name for attribute in cloud.attributes)
     vertices = vertices[kept]
@@ -480,10 +499,10 @@ def cloud_mesh(
         vertices[:, 2] = frame.local_z(stored * cloud.scales[2] + cloud.offsets[2])
     faces = delaunay_faces(vertices[:, :2])
     gaps = gaps_of(vertices[:, :2], faces)
-    source = replace(source, spacing=gaps.spacing)
+    origin = replace(origin, spacing=gaps.spacing)
     faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
-    _tell_of_merging(name, source)
-    return TriangleMesh(vertices, faces, attributes, names), source
+    _tell_of_merging(name, origin)
+    return TriangleMesh(vertices, faces, attributes, names), origin
 
 
 def _without_gaps(
@@ -497,64 +516,50 @@ def _without_gaps(
     if max_edge is None and not concave:
         if gaps.share > TOLD_GAPS:
             _tell(
-                f"{name}: gaps between the points take {gaps.share:.0%} of the area and are closed "
-                f"by long triangles; --max-edge auto (here {gaps.length:.4g}) leaves them out"
+                "gaps",
+                "{name}: gaps between the points take {share:.0%} of the area and are closed by "
+                "long triangles; {0} auto (here {length:.4g}) leaves them out",
+                "max_edge",
+                name=name,
+                share=gaps.share,
+                length=gaps.length,
             )
         return faces
     length = gaps.length if max_edge is None or max_edge == "auto" else float(max_edge)
     within = faces_within(plan, faces, length, from_outline=concave)
-    n_alone = len(plan) - len(np.unique(within))
     _tell(
-        f"{name}: {len(faces) - len(within)} of {len(faces)} triangles have an edge longer than "
-        f"{length:.4g} and are left out"
-        + (f"; {n_alone} points are in no triangle then" if n_alone else "")
+        "gaps_left_out",
+        "{name}: {n_gone} of {n_faces} triangles have an edge longer than {length:.4g} and are "
+        "left out; {n_alone} points are in no triangle then",
+        name=name,
+        n_gone=len(faces) - len(within),
+        n_faces=len(faces),
+        length=length,
+        n_alone=len(plan) - len(np.unique(within)),
     )
     return within
 
 
-def _tell_of_merging(name: str, source: PointSource) -> None:
-    merged = source.merged_heights()
+def _tell_of_merging(name: str, origin: CloudOrigin) -> None:
+    merged = origin.merged_heights()
     if merged.n_points:
         _tell(
-            f"{name}: {merged.n_points} points share x and y with others; "
-            f"{_WORDS_OF_RULE[merged.rule]} stands for them, up to {merged.largest:.4g} off "
-            f"(root mean square {merged.rms:.4g}) (--duplicates)"
+            "merged_points",
+            "{name}: {n_points} points share x and y with others; the {rule} of each place stands "
+            "for them, up to {largest:.4g} off (root mean square {rms:.4g}) ({0})",
+            "duplicates",
+            name=name,
+            **merged._asdict(),
         )
 
 
-_WORDS_OF_RULE = {
-    "lowest": "the lowest of each place",
-    "highest": "the highest of each place",
-    "mean": "the mean of each place",
-    "first": "the first of each place",
-}
-
-
-def _tell(message: str) -> None:
-    warnings.warn(message, PointCloudWarning, stacklevel=4)
+def _tell(code: str, template: str, *options: str, **figures: Any) -> None:
+    warn(PointCloudWarning, code, template, *options, stacklevel=4, **figures)
 
 
 def _int32(values: NDArray[np.int64]) -> NDArray[np.int32]:
     limits = np.iinfo(np.int32)
     return np.clip(values, limits.min, limits.max).astype(np.int32)
-
-
-def _length(value: object) -> float | None:
-    """Return a length, checked as one."""
-    if value is None:
-        return None
-    if not isinstance(value, float) or not 0 < value < math.inf:
-        raise ValueError("a length that is none")
-    return value
-
-
-def _offset(value: object) -> int | None:
-    """Return an offset in a file, checked as one."""
-    if value is None:
-        return None
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value < 1 << 62:
-        raise ValueError("an offset that is none")
-    return value
 
 
 def _emptied(cloud: PointCloud) -> PointCloud:
@@ -569,17 +574,16 @@ def _emptied(cloud: PointCloud) -> PointCloud:
     )
 
 
-def _attribute(described: dict[str, Any]) -> PointAttribute:
-    dtype = np.dtype(str(described["dtype"]))
-    scale, offset = float(described["scale"]), float(described["offset"])
-    if dtype.kind not in "iuf" or not math.isfinite(scale) or scale == 0:
-        raise ValueError("an attribute that is no number")
-    component = described["component"]
+def _attribute(described: Fields) -> PointAttribute:
+    dtype = number_dtype(described.text("dtype"))
+    scale, offset = described.number("scale"), described.number("offset")
+    if scale == 0:
+        raise ValueError("an attribute with a scale of zero")
     return PointAttribute(
-        name=str(described["name"]),
-        dimension=str(described["dimension"]),
+        name=described.text("name"),
+        dimension=described.text("dimension"),
         values=np.empty(0, dtype),
-        component=None if component is None else int(component),
+        component=None if described["component"] is None else described.integer("component"),
         scale=scale,
         offset=offset,
     )

@@ -14,7 +14,6 @@ from wavelet_core.errors import OptionError
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.cloud import PointCloud
-from wavelet_gis.model.cloud_origin import PointSource
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.workflows.classify import NOT_KNOWN
 
@@ -44,8 +43,8 @@ def labels_from_las(geo: GeoPyramid, unlabelled: Sequence[int] = UNLABELLED) -> 
     OptionError
         The pyramid was not made from a point cloud, or its classes were dropped.
     """
-    source = geo.source
-    if not isinstance(source, PointSource):
+    source = geo.origin.points
+    if source is None:
         raise OptionError(
             "the pyramid was not made from a point cloud, so it has no LAS classes; learn from a "
             "layer instead."
@@ -59,8 +58,9 @@ def labels_from_las(geo: GeoPyramid, unlabelled: Sequence[int] = UNLABELLED) -> 
         classes = np.rint(mesh.attributes[:, column]).astype(np.int64)
     else:
         raise OptionError(
-            "the pyramid does not hold the classes of its points; analyse the file again without "
-            "--drop-other-dimensions."
+            "the pyramid does not hold the classes of its points; analyse the file again, with "
+            "{0}.",
+            "carry",
         )
     classes[np.isin(classes, list(unlabelled))] = NOT_KNOWN
     return classes
@@ -99,7 +99,12 @@ def labels_from_layer(
         reason = str(error).splitlines()[0].rstrip(".")
         raise InputFileError(f"{name}: the labels cannot be read ({reason}).") from error
     if field not in list(with_crs["fields"]):
-        raise InputFileError(f"{name}: there is no field {field!r}; name one with --field.")
+        raise InputFileError(
+            "{name}: there is no field {field!r}; name one with {0}.",
+            "field",
+            name=name,
+            field=field,
+        )
     _require_same_crs(geo, name, with_crs["crs"])
     classes = _whole_numbers(name, field, columns[0])
     shapes = shapely.from_wkb(geometry)
@@ -134,8 +139,8 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
         The pyramid was not made from a point cloud, its classes were dropped, or a label is above
         what the point format holds (31 in formats 0 to 5).
     """
-    source = geo.source
-    if not isinstance(source, PointSource):
+    source = geo.origin.points
+    if source is None:
         raise OptionError("the pyramid was not made from a point cloud; write .gpkg or .tif.")
     cloud = cast(PointCloud, geo.restore())
     of_point = np.full(source.n_points, NOT_KNOWN, dtype=np.int64)
@@ -156,8 +161,9 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
         cloud = replace(cloud, carried={**cloud.carried, "classification": stored})
     elif not any(a.dimension == "classification" for a in cloud.attributes):
         raise OptionError(
-            "the pyramid does not hold the classes of its points; analyse the file again without "
-            "--drop-other-dimensions."
+            "the pyramid does not hold the classes of its points; analyse the file again, with "
+            "{0}.",
+            "carry",
         )
     attributes = []
     for attribute in cloud.attributes:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.io.las import read_cloud, write_cloud
-from wavelet_gis.io.las_header import parse_layout
+from wavelet_gis.io.las.layout import parse_layout
 
 N_VLRS, OFFSET, FORMAT, LENGTH, COUNT, SCALES, OFFSETS = 100, 96, 104, 105, 107, 131, 155
 

@@ -16,7 +16,7 @@ import pytest
 from wavelet_core import analyse
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.las import read_cloud, write_cloud
-from wavelet_gis.io.las_header import RECORD_LENGTHS, read_layout
+from wavelet_gis.io.las.layout import RECORD_LENGTHS, read_layout
 from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.workflows.open import open_terrain
 

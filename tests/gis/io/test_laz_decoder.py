@@ -10,9 +10,8 @@ import pytest
 from gis.samples import write_las
 
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.io import laz_decoder
-from wavelet_gis.io.las import read_cloud
-from wavelet_gis.io.las_header import laszip_record, read_layout
+from wavelet_gis.io.las import laz_decoder, read_cloud
+from wavelet_gis.io.las.layout import laszip_record, read_layout
 
 pytestmark = pytest.mark.filterwarnings("ignore:.*(left out of the surface|runs from)")
 

@@ -15,7 +15,7 @@ from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import CrsError, InputFileError, PointCloudWarning
 from wavelet_gis.io.las import read_cloud, write_cloud
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
-from wavelet_gis.model.cloud_origin import PointSource, cloud_mesh
+from wavelet_gis.model.cloud_origin import CloudOrigin, cloud_mesh
 from wavelet_gis.model.terrain import terrain_of_cloud
 from wavelet_gis.products.level_raster import surface_dem
 from wavelet_gis.workflows.open import open_terrain
@@ -59,7 +59,7 @@ def test_any_duplicates_come_back_and_count_in_the_errors(cloud, rule):
     mesh, source = cloud_mesh(cloud, LocalFrame(), duplicates=rule)
     finest = analyse(mesh, levels=2).synthesise()
     source = source.with_corrections(cloud, finest, LocalFrame())
-    source = PointSource.from_parts(*source.to_parts())
+    source = CloudOrigin.from_parts(*source.to_parts())
     back = source.restore(finest, LocalFrame())
     assert (back.integers == cloud.integers).all()
     assert (back.attributes[0].values == cloud.attributes[0].values).all()
@@ -134,9 +134,9 @@ def test_damaged_descriptions_are_refused(damage):
     cloud = cloud_of([[0, 0, 0], [900, 0, 0], [0, 900, 0], [900, 900, 0], [5, 5, -9000]], aside)
     mesh, source = cloud_mesh(cloud, LocalFrame())
     fields, arrays = source.with_corrections(cloud, mesh, LocalFrame()).to_parts()
-    assert PointSource.from_parts(fields, arrays).n_vertices == 4
+    assert CloudOrigin.from_parts(fields, arrays).n_vertices == 4
     with pytest.raises(PyramidError):
-        PointSource.from_parts(fields, {**arrays, **damage})
+        CloudOrigin.from_parts(fields, {**arrays, **damage})
 
 
 def test_pyramids_of_before_are_read():
@@ -146,7 +146,7 @@ def test_pyramids_of_before_are_read():
     fields, arrays = source.with_corrections(cloud, mesh, LocalFrame()).to_parts()
     for key in ("duplicates", "spacing", "evlrs_at"):
         del fields[key]
-    back = PointSource.from_parts(fields, arrays).restore(mesh, LocalFrame())
+    back = CloudOrigin.from_parts(fields, arrays).restore(mesh, LocalFrame())
     assert (back.integers == cloud.integers).all()
 
 
@@ -196,7 +196,7 @@ def test_a_class_asked_for_is_kept(tmp_path):
 
 def test_nothing_but_noise_is_refused_with_the_way_out(tmp_path):
     path = las_with(tmp_path, 6, classes=[(slice(0, 100), 18)])
-    with pytest.raises(InputFileError, match=r"all points .* keep them with --keep-noise"):
+    with pytest.raises(InputFileError, match=r"all points .* keep them with keep_noise"):
         read_cloud(path)
 
 
@@ -225,7 +225,7 @@ def two_fields(n=600):
 
 def test_a_gap_is_told_of_and_left_out_when_asked():
     cloud = two_fields()
-    with pytest.warns(PointCloudWarning, match=r"gaps .* take 6\d% .* --max-edge auto"):
+    with pytest.warns(PointCloudWarning, match=r"gaps .* take 6\d% .* max_edge auto"):
         closed = terrain_of_cloud("a", cloud, projected())
     with pytest.warns(PointCloudWarning, match=r"triangles have an edge longer than"):
         opened = terrain_of_cloud("a", cloud, projected(), max_edge="auto")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib.util import find_spec
@@ -18,8 +17,9 @@ from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.crs.las import las_crs
 from wavelet_gis.errors import CrsWarning, InputFileError, OutputFileError, PointCloudWarning
-from wavelet_gis.io import las_block, laz_decoder
-from wavelet_gis.io.las_header import (
+from wavelet_gis.io.las import block as las_block
+from wavelet_gis.io.las import laz_decoder
+from wavelet_gis.io.las.layout import (
     LARGEST_COORDINATE,
     RECORD_LENGTHS,
     LasLayout,
@@ -30,6 +30,7 @@ from wavelet_gis.io.las_header import (
 )
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 from wavelet_gis.model.ground import GROUND_CLASS, height_above_ground
+from wavelet_gis.notes import warn
 
 if TYPE_CHECKING:
     from laspy import LasHeader
@@ -109,8 +110,12 @@ def read_cloud(
     array = points.array
     if len(array) < layout.n_points:
         _tell(
-            f"{name}: the header announces {layout.n_points} points, the file ends after "
-            f"{len(array)}; those are used"
+            "points_missing",
+            "{name}: the header announces {n_announced} points, the file ends after {n_points}; "
+            "those are used",
+            name=name,
+            n_announced=layout.n_points,
+            n_points=len(array),
         )
     lifted = [
         attribute
@@ -140,7 +145,7 @@ def read_cloud(
     _tell_of_waveforms(name, layout)
     place = las_crs(_projection_records(layout, tail, tail_at))
     for note in place.notes:
-        warnings.warn(f"{name}: {note}", CrsWarning, stacklevel=2)
+        warn(CrsWarning, "las_crs", "{name}: {fact}", name=name, fact=note, stacklevel=2)
     return cloud, place
 
 
@@ -197,8 +202,8 @@ def _laspy() -> Any:
     return laspy
 
 
-def _tell(message: str) -> None:
-    warnings.warn(message, PointCloudWarning, stacklevel=3)
+def _tell(code: str, template: str, *options: str, **figures: Any) -> None:
+    warn(PointCloudWarning, code, template, *options, stacklevel=3, **figures)
 
 
 def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes, int | None]:
@@ -217,7 +222,7 @@ def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes
                 "mistake, cut the file into tiles."
             ) from error
         for note in layout.notes:
-            _tell(f"{name}: {note}")
+            _tell("las_header", "{name}: {fact}", name=name, fact=note)
         start = layout.points_end
         if layout.is_compressed:
             places = [place for place in (layout.evlr_start, layout.waveform_start) if place]
@@ -225,7 +230,7 @@ def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes
         stream.seek(start)
         tail, tail_at, note = las_block.tail_of(stream.read(), start, layout)
         if note:
-            _tell(f"{name}: {note}")
+            _tell("las_header", "{name}: {fact}", name=name, fact=note)
     return layout, header, points, tail, tail_at
 
 
@@ -303,9 +308,14 @@ def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> No
         told = layout.low[k], layout.high[k]
         if not (abs(told[0] - low) <= slack and abs(told[1] - high) <= slack):
             _tell(
-                f"{name}: the header says that {axis} runs from {told[0]:.10g} to {told[1]:.10g}, "
-                f"the points run from {low:.10g} to {high:.10g}; if that is no old mistake, the "
-                "file is damaged"
+                "header_extent",
+                "{name}: the header says that {axis} runs from {told[0]:.10g} to {told[1]:.10g}, "
+                "the points run from {found[0]:.10g} to {found[1]:.10g}; if that is no old "
+                "mistake, the file is damaged",
+                name=name,
+                axis=axis,
+                told=told,
+                found=(low, high),
             )
 
 
@@ -351,20 +361,30 @@ def _aside(
         )
         if mask.any()
     ]
-    flags = [
-        flag
-        for mask, flag in ((is_withheld, "--keep-withheld"), (is_noise, "--keep-noise"))
+    options = [
+        option
+        for mask, option in ((is_withheld, "keep_withheld"), (is_noise, "keep_noise"))
         if mask.any()
     ]
+    ways = " and ".join(f"{{{k}}}" for k in range(len(options)))
     if n_aside == len(aside):
         raise InputFileError(
-            f"{name}: all points are left out of the surface ({' and '.join(parts)}); keep them "
-            f"with {' and '.join(flags)}."
+            "{name}: all points are left out of the surface ({parts}); keep them with "
+            + ways
+            + ".",
+            *options,
+            name=name,
+            parts=" and ".join(parts),
         )
     _tell(
-        f"{name}: {n_aside} of {len(aside)} points are left out of the surface "
-        f"({' and '.join(parts)}); they are carried along, {' and '.join(flags)} "
-        f"let{'s' * (len(flags) == 1)} them in"
+        "points_aside",
+        "{name}: {n_aside} of {n_points} points are left out of the surface ({parts}); they are "
+        f"carried along, {ways} let{'s' * (len(options) == 1)} them in",
+        *options,
+        name=name,
+        n_aside=n_aside,
+        n_points=len(aside),
+        parts=" and ".join(parts),
     )
     return aside
 
@@ -577,6 +597,9 @@ def _tell_of_waveforms(name: str, layout: LasLayout) -> None:
         return
     where = "another file (.wdp)" if layout.has_outside_waveforms else "no place the header names"
     _tell(
-        f"{name}: the points refer to waveforms in {where}; their references are carried, the "
-        "waveform samples themselves are not"
+        "waveforms",
+        "{name}: the points refer to waveforms in {where}; their references are carried, the "
+        "waveform samples themselves are not",
+        name=name,
+        where=where,
     )

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_gis.io.las_header import (
+from wavelet_gis.io.las.layout import (
     EVLRS,
     POINT_COUNT,
     RECORD_LENGTHS,
