@@ -15,27 +15,27 @@ MODELS = PLUGIN_FOLDER / "processing_models"
 class TerrainWaveletsProvider(QgsProcessingProvider):
     """Lists every algorithm and model, whatever packages are missing; running one says which."""
 
-    def id(self):
+    def id(self) -> str:
         """Return the provider's id, part of every algorithm's public name."""
         return "terrainwavelets"
 
-    def name(self):
+    def name(self) -> str:
         """Return the name in the toolbox."""
         return "Terrain Wavelets"
 
-    def longName(self):
+    def longName(self) -> str:
         """Return the name with what it is for."""
         return tr("Terrain Wavelets: reversible multiresolution TINs")
 
-    def icon(self):
+    def icon(self) -> QIcon:
         """Return the icon in the toolbox."""
         return QIcon(ICON)
 
-    def svgIconPath(self):
+    def svgIconPath(self) -> str:
         """Return the icon's file, which Processing renders at any size."""
         return ICON
 
-    def loadAlgorithms(self):
+    def loadAlgorithms(self) -> None:
         """Add every algorithm, then every model."""
         for algorithm in ALGORITHMS:
             self.addAlgorithm(algorithm())

@@ -285,17 +285,88 @@ def test_two_in_batch(provider, pyramid, tmp_path):
     assert sizes[1] > sizes[0]
 
 
-def test_the_choices_are_served_by_the_core(qgis):
-    from terrain_wavelets.plugin.parameters import analysis_options as design
-    from terrain_wavelets.plugin.parameters import mesh_output
+def test_a_dialog_offers_what_the_tables_hold(provider):
+    import wavelet_core
+    from wavelet_gis.io.formats import MESH_FORMATS
 
-    from wavelet_core.lifting.options import PARTITIONS, SIGNALS
-    from wavelet_core.lifting.prediction import PREDICTIONS
-    from wavelet_core.lifting.update import UPDATES
-    from wavelet_gis.io.formats import MESH_SUFFIXES
+    algorithm = provider.algorithm("simplifydem")
+    for name in ("PARTITION", "NORM", "PREDICTION", "UPDATE", "SIGNAL"):
+        parameter = algorithm.parameterDefinition(name)
+        table = getattr(wavelet_core, f"{name}S")
+        assert parameter.options() == ["default", *table]
+        assert all(row.help in parameter.help() for row in table.values())
+    mesh = algorithm.parameterDefinition("MESH")
+    assert all(f"(*{row.suffix})" in mesh.fileFilter() for row in MESH_FORMATS)
+    assert mesh.fileFilter().startswith("2DM")
 
-    assert set(design.PARTITIONS) <= set(PARTITIONS)
-    assert set(design.PREDICTIONS) <= set(PREDICTIONS.values())
-    assert set(design.UPDATES) == set(UPDATES.values())
-    assert set(design.SIGNALS) == set(SIGNALS)
-    assert set(mesh_output.FORMATS) == set(MESH_SUFFIXES)
+
+def test_a_new_row_of_a_table_is_in_the_dialog(qgis, monkeypatch):
+    from terrain_wavelets.plugin.algorithms import ALGORITHMS
+
+    import wavelet_core
+    from wavelet_gis.io import formats
+
+    first = next(iter(wavelet_core.PREDICTIONS.values()))
+    new = first._replace(name="median", short="MD", help="the median of the neighbours")
+    monkeypatch.setitem(wavelet_core.PREDICTIONS, "median", new)
+    row = formats.MeshFormat(".msh", "Gmsh", "a:b", "finite elements")
+    monkeypatch.setattr(formats, "MESH_FORMATS", (*formats.MESH_FORMATS, row))
+    (algorithm,) = (a() for a in ALGORITHMS if a().name() == "simplifydem")
+    algorithm.initAlgorithm()
+    prediction = algorithm.parameterDefinition("PREDICTION")
+    assert "median" in prediction.options()
+    assert "the median of the neighbours (MD" in prediction.help()
+    assert "Gmsh (*.msh)" in algorithm.parameterDefinition("MESH").fileFilter()
+
+
+def test_dialogs_open_without_scipy_and_say_what_is_missing(qgis, monkeypatch):
+    from qgis.core import QgsProcessingContext
+    from terrain_wavelets.plugin.algorithms import ALGORITHMS
+    from terrain_wavelets.plugin.ui import dependencies
+
+    find = dependencies.missing
+    gone = dependencies.SCIPY
+    monkeypatch.setattr(
+        dependencies, "missing", lambda packages: [p for p in packages if p == gone or find([p])]
+    )
+    for kind in ALGORITHMS:
+        algorithm = kind()
+        algorithm.initAlgorithm()
+        is_fine, message = algorithm.checkParameterValues({}, QgsProcessingContext())
+        assert not is_fine
+        assert "missing Python package: scipy" in message
+
+
+def test_a_command_for_a_terminal_is_quoted(qgis, monkeypatch):
+    from terrain_wavelets.plugin.ui import dependencies
+
+    monkeypatch.setattr(dependencies.sys, "platform", "darwin")
+    assert "'laspy[lazrs]'" in dependencies.remedy([dependencies.LASPY])
+    monkeypatch.setattr(dependencies.sys, "platform", "win32")
+    assert '"laspy[lazrs]"' in dependencies.remedy([dependencies.LASPY])
+
+
+def test_a_cloud_needs_no_pythoncdt_and_breaklines_do(provider, tmp_path):
+    from qgis.core import QgsProcessingContext
+    from terrain_wavelets.plugin.parameters.request import Request
+    from terrain_wavelets.plugin.ui import dependencies
+
+    def needed(name, parameters):
+        algorithm = provider.algorithm(name)
+        return algorithm.packages(Request(algorithm, parameters, QgsProcessingContext()))
+
+    assert dependencies.PYTHONCDT not in needed("analysepointcloud", {"INPUT": "a.laz"})
+    assert needed("analysetin", {"INPUT": "a.gpkg"}) == ()
+    assert needed("analysetin", {"BREAKLINES": "b.gpkg"}) == (dependencies.PYTHONCDT,)
+
+
+def test_an_error_names_parameters_as_the_dialog_does(provider):
+    from wavelet_core import OptionError
+
+    error = OptionError("{0} is {given}; leave out {1}.", "max_rms", "target_vertices", given=-1)
+    assert provider.algorithm("simplifydem").in_words(error) == (
+        "'RMSE' is -1; leave out 'Number of vertices'."
+    )
+    assert provider.algorithm("analysedem").in_words(error) == (
+        "'Stop at this RMSE' is -1; leave out 'Stop at this number of vertices'."
+    )

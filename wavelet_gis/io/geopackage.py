@@ -127,7 +127,7 @@ def open_stranger(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
     except (sqlite3.Error, UnicodeError) as error:
         raise InputFileError(
             f"{name}: this is no GeoPackage, or a damaged one ({error}); give a pyramid file that "
-            "'terrain-wavelets analyse' wrote."
+            "an analysis made."
         ) from error
     finally:
         connection.close()

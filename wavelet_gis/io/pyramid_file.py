@@ -302,7 +302,7 @@ def _read_metadata(connection: sqlite3.Connection, path: str | os.PathLike[str])
     if missing:
         raise InputFileError(
             f"{path}: this GeoPackage holds no wavelet pyramid (no table "
-            f"{', '.join(sorted(missing))}); give one that 'terrain-wavelets analyse' wrote."
+            f"{', '.join(sorted(missing))}); give one that an analysis made."
         )
     metadata = {}
     for name, value in connection.execute("SELECT name, value FROM wavelet_metadata LIMIT 100"):
