@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsProcessingModelAlgorithm, QgsProcessingProvider
+from pathlib import Path
+
+from qgis.core import QgsProcessingAlgorithm, QgsProcessingModelAlgorithm, QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
 from .algorithms import ALGORITHMS
@@ -10,6 +12,31 @@ from .packages import ICON, PLUGIN_FOLDER
 from .ui.translation import tr
 
 MODELS = PLUGIN_FOLDER / "processing_models"
+
+
+class ShippedModel(QgsProcessingModelAlgorithm):
+    """A model that comes with the plugin; its id is the name of its file, which never changes.
+
+    QGIS itself takes the name that people read for the id.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._path = path
+        self.is_read = self.fromFile(str(path))
+        self.setSourceFilePath(str(path))
+
+    def name(self) -> str:
+        """Return the public id."""
+        return self._path.stem
+
+    def displayName(self) -> str:
+        """Return the name in the toolbox."""
+        return super().name()
+
+    def createInstance(self) -> QgsProcessingAlgorithm:
+        """Return the same model anew."""
+        return ShippedModel(self._path)
 
 
 class TerrainWaveletsProvider(QgsProcessingProvider):
@@ -40,7 +67,6 @@ class TerrainWaveletsProvider(QgsProcessingProvider):
         for algorithm in ALGORITHMS:
             self.addAlgorithm(algorithm())
         for path in sorted(MODELS.glob("*.model3")):
-            model = QgsProcessingModelAlgorithm()
-            if model.fromFile(str(path)):
-                model.setSourceFilePath(str(path))
+            model = ShippedModel(path)
+            if model.is_read:
                 self.addAlgorithm(model)

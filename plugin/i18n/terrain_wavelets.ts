@@ -230,12 +230,22 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>A line that is laid on the terrain keeps only as many vertices as it needs to be nowhere farther above or below it, in the unit of elevation. Empty for the largest error where that is a stop rule, else for a thousandth of the relief.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Along breaklines and outline: RMSE {:.4g}, largest error {:.4g}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
     <source>Analyse points or TIN</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Become edges of the TIN. Where they have no Z, their vertices lie on the TIN of the points; where they cross, they are cut.</source>
+    <source>Become edges of the TIN. Without Z they are laid on the TIN of the points, all along; with Z they keep it. Where they cross, they are cut.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -270,6 +280,16 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Largest error along breaklines and outline, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Laying lines on the terrain</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
     <source>Lock breaklines</source>
     <translation type="unfinished"></translation>
   </message>
@@ -295,7 +315,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Only the terrain inside; its outline becomes edges of the TIN.</source>
+    <source>Only the terrain inside; its outline becomes edges of the TIN and is laid on the TIN of the points.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -320,7 +340,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>RMSE along breaklines and outline, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
     <source>Reading the triangles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Tolerance along lines without Z</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

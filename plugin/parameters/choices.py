@@ -71,5 +71,5 @@ def _row_help(row: Any) -> str:
     """Return one row of a table as a line: its name, what it does, where the paper has it."""
     names = [getattr(row, "short", ""), getattr(row, "equation", "")]
     paper = ", ".join(name for name in names if name and name != row.name)
-    text = html.escape(tr(row.help))
-    return f"<i>{row.name}</i>: {text}" + (f" ({html.escape(paper)})" if paper else "")
+    text = html.escape(tr(row.help), quote=False)
+    return f"<i>{row.name}</i>: {text}" + (f" ({html.escape(paper, quote=False)})" if paper else "")

@@ -44,7 +44,7 @@ def add_mesh_parameter(algorithm: TerrainWaveletsAlgorithm, description: str) ->
 
 def _format_help(row: MeshFormat) -> str:
     """Return one mesh format as a line: its suffix, what opens it, what it needs and keeps."""
-    facts = [html.escape(tr(row.used_by))]
+    facts = [html.escape(tr(row.used_by), quote=False)]
     if row.package:
         facts.append(tr("needs the Python package {}").format(row.package))
     if row.keeps_attributes:

@@ -21,10 +21,10 @@ ALGORITHMS = (
     "clusterdetails",
     "filterlevels",
     "qualityreport",
-    "DEM to coarse TIN and details",
-    "DEM and breaklines to hydraulic mesh",
-    "Point cloud to filtered DEM",
-    "DEM to denoised DEM and report",
+    "dem_to_coarse_tin",
+    "dem_to_hydraulic_mesh",
+    "point_cloud_to_dem",
+    "dem_to_denoised_dem",
 )
 KEPT = os.environ.get("TERRAIN_WAVELETS_PICTURES")
 

@@ -285,6 +285,95 @@ def test_two_in_batch(provider, pyramid, tmp_path):
     assert sizes[1] > sizes[0]
 
 
+@pytest.fixture
+def opened(qgis):
+    """Return a function that runs an algorithm and returns the layers that it opens, by name."""
+    import processing
+    from qgis.core import QgsProcessingContext, QgsProject
+
+    project = QgsProject.instance()
+
+    def run_and_open(name, parameters):
+        context = QgsProcessingContext()
+        context.setProject(project)
+        processing.runAndLoadResults(f"terrainwavelets:{name}", parameters, context=context)
+        return {layer.name(): layer for layer in project.mapLayers().values()}
+
+    yield run_and_open
+    project.clear()
+
+
+class TestEveryOutputOpensStyled:
+    def test_energy_is_one_band_in_a_ramp_from_nothing(self, opened, pyramid):
+        parameters = {"INPUT": pyramid, "OUTPUT": "TEMPORARY_OUTPUT", "ENERGY": "TEMPORARY_OUTPUT"}
+        renderer = opened("detaillayers", parameters)["Energy by level"].renderer()
+        assert renderer.type() == "singlebandpseudocolor"
+        assert renderer.classificationMin() == 0
+        assert renderer.classificationMax() > 0
+
+    def test_a_difference_is_white_where_nothing_changed(self, opened, pyramid):
+        parameters = {
+            "INPUT": pyramid,
+            "LAST_LEVEL": 3,
+            "DEM": "TEMPORARY_OUTPUT",
+            "DIFFERENCE": "TEMPORARY_OUTPUT",
+        }
+        layer = opened("filterlevels", parameters)["Difference of the DEMs"]
+        items = layer.renderer().shader().rasterShaderFunction().colorRampItemList()
+        values = [item.value for item in items]
+        assert values[0] == -values[-1] < 0
+        (middle,) = (item for item in items if item.value == 0)
+        assert middle.color.getRgb()[:3] == (247, 247, 247)
+
+    def test_vertices_of_a_level_and_a_temporary_mesh(self, opened, pyramid):
+        parameters = {
+            "INPUT": pyramid,
+            "TIN": "TEMPORARY_OUTPUT",
+            "VERTICES": "TEMPORARY_OUTPUT",
+            "MESH": "TEMPORARY_OUTPUT",
+        }
+        layers = opened("extractlevel", parameters)
+        assert set(layers) == {"TIN of the level", "Vertices of the level", "Mesh of the level"}
+        symbol = layers["Vertices of the level"].renderer().symbol()
+        assert symbol.color().getRgb()[:3] == (60, 60, 60)
+
+    def test_a_cluster_has_one_colour_as_raster_and_as_points(self, opened, pyramid):
+        pytest.importorskip("sklearn")
+        parameters = {
+            "INPUT": pyramid,
+            "COUNT": 3,
+            "RASTER": "TEMPORARY_OUTPUT",
+            "OUTPUT": "TEMPORARY_OUTPUT",
+        }
+        layers = opened("clusterdetails", parameters)
+        of_cells = {
+            int(c.value): c.color.name() for c in layers["Map of clusters"].renderer().classes()
+        }
+        of_points = {
+            int(c.value()): c.symbol().color().name()
+            for c in layers["Clustered vertices"].renderer().categories()
+        }
+        assert of_cells == of_points
+        assert len(set(of_cells.values())) == 3
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["mesh from dem", "tin", "decimate", "thin", "generalise", "generalize", "dem to tin"],
+)
+def test_the_toolbox_finds_the_way_from_a_dem_to_a_tin(provider, words):
+    algorithm = provider.algorithm("simplifydem")
+    shown = [algorithm.displayName(), algorithm.shortDescription(), *algorithm.tags()]
+    text = " ".join(shown).lower()
+    assert all(word in text for word in words.split())
+
+
+def test_every_algorithm_is_described_in_one_line(provider):
+    for algorithm in provider.algorithms():
+        if algorithm.group() != "Models":
+            assert 20 < len(algorithm.shortDescription()) < 100, algorithm.name()
+
+
 def test_a_dialog_offers_what_the_tables_hold(provider):
     import wavelet_core
     from wavelet_gis.io.formats import MESH_FORMATS
