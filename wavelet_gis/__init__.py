@@ -19,16 +19,15 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.analyse import Analysis, analyse
     from wavelet_gis.workflows.cluster import Labelled, classify, cluster
     from wavelet_gis.workflows.details import Details, details
-    from wavelet_gis.workflows.extract import extract
+    from wavelet_gis.workflows.extract import Surface, extract
     from wavelet_gis.workflows.filtering import Filtered
     from wavelet_gis.workflows.filtering import filter_pyramid as filter
     from wavelet_gis.workflows.labels import labels_from_las, labels_from_layer
-    from wavelet_gis.workflows.open_data import load
-    from wavelet_gis.workflows.open_data import open_data as open
+    from wavelet_gis.workflows.open import load
+    from wavelet_gis.workflows.open import open_data as open
     from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
     from wavelet_gis.workflows.save import save
     from wavelet_gis.workflows.simplify import Simplified, simplify
-    from wavelet_gis.workflows.surface import Surface
 
 __all__ = [
     "Analysis",
@@ -62,7 +61,7 @@ _HOMES = {
     "Labelled": "workflows.cluster:Labelled",
     "Reconstruction": "workflows.reconstruct:Reconstruction",
     "Simplified": "workflows.simplify:Simplified",
-    "Surface": "workflows.surface:Surface",
+    "Surface": "workflows.extract:Surface",
     "analyse": "workflows.analyse:analyse",
     "classify": "workflows.cluster:classify",
     "cluster": "workflows.cluster:cluster",
@@ -71,8 +70,8 @@ _HOMES = {
     "filter": "workflows.filtering:filter_pyramid",
     "labels_from_las": "workflows.labels:labels_from_las",
     "labels_from_layer": "workflows.labels:labels_from_layer",
-    "load": "workflows.open_data:load",
-    "open": "workflows.open_data:open_data",
+    "load": "workflows.open:load",
+    "open": "workflows.open:open_data",
     "reconstruct": "workflows.reconstruct:reconstruct",
     "report_page": "report.page:report_page",
     "save": "workflows.save:save",

@@ -1,4 +1,4 @@
-"""Notes: what is worth telling about an input and what was done with it, collected in one place.
+"""Notes: facts about an input and what was done with it, collected in one place.
 
 Whoever finds something out calls `note` or `warn`, wherever in the work that is; whoever runs the
 work keeps what was noted with `collected`. So the command line's text and its JSON, the report and
@@ -86,7 +86,7 @@ class Note:
     def from_dict(cls, fields: Mapping[str, Any]) -> Note:
         """Return the note that `to_dict` described; its text is taken as it stands.
 
-        A template out of a stranger's file is never filled in.
+        A template from a file of unknown origin is never filled in.
         """
         text = str(fields["text"]).replace("{", "{{").replace("}", "}}")
         return cls(

@@ -36,7 +36,7 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
 
     def geo_pyramid(self, request: Request) -> GeoPyramid:
         """Return the pyramid in the file."""
-        from wavelet_gis.workflows.open_data import load
+        from wavelet_gis.workflows.open import load
 
         request.stage(tr("Reading the pyramid"))
         # A layer of the file may have been handed on by a model: 'file.gpkg|layername=coarse_tin'.

@@ -216,7 +216,7 @@ class AnalyseTin(AnalysisAlgorithm):
 
     def more_figures(self, request: Request, geo: GeoPyramid) -> Values:
         """Return how far the coarsest level is from the terrain along the lines."""
-        from wavelet_gis.workflows.surface import measured
+        from wavelet_gis.workflows.extract import measured
 
         if self.profile is None or len(self.profile) == 0:
             return {}

@@ -16,7 +16,7 @@ from .pyramid import crs_of
 
 if TYPE_CHECKING:
     from wavelet_gis.io.formats import MeshFormat
-    from wavelet_gis.workflows.surface import Surface
+    from wavelet_gis.workflows.extract import Surface
 
     from ..base import TerrainWaveletsAlgorithm
     from .request import Request

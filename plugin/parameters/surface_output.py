@@ -10,7 +10,7 @@ from ..ui.translation import tr
 from . import mesh_output, tin_output
 
 if TYPE_CHECKING:
-    from wavelet_gis.workflows.surface import Surface
+    from wavelet_gis.workflows.extract import Surface
 
     from ..base import TerrainWaveletsAlgorithm
     from .request import Request

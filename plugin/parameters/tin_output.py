@@ -13,7 +13,7 @@ from .pyramid import crs_of
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.products.layers import Layer
-    from wavelet_gis.workflows.surface import Surface
+    from wavelet_gis.workflows.extract import Surface
 
     from .request import Request
 

@@ -121,7 +121,7 @@ def test_a_cloud_comes_back_as_a_cloud(done, cloud_pyramid, las, tmp_path):
         ([], "nothing to change"),
         (["--gain", "9=0"], "no details at level 9"),
         (["--band", "2:1"], "smaller bound first"),
-        (["--denoise", "-1"], "sigma is -1"),
+        (["--denoise", "-1"], "--denoise is -1"),
         (["--denoise", "1", "--channel", "w"], "no channel 'w'"),
     ],
 )

@@ -144,7 +144,7 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     names += [f"height above lows of {first}" for first, _ in bands]
     names += [f"rms geometry {label}" for label in labels]
     details = vertex_details(pyramid)
-    column = 0 if pyramid.signal == "z" else 2
+    column = pyramid.channels.index("z")
     blocks += [np.nan_to_num(details.vectors[:, [column]]), details.level[:, None]]
     names += ["own detail", "level"]
     for k, attribute in enumerate(pyramid.attribute_names, start=1):

@@ -295,15 +295,12 @@ def heights_above_lows(
 
 
 def _finest_column(pyramid: Pyramid, column: int) -> FloatArray:
-    mesh = pyramid.synthesise()
-    coordinates = mesh.vertices[:, 2:] if pyramid.signal == "z" else mesh.vertices
-    values: FloatArray = np.hstack([coordinates, mesh.attributes])[:, column]
-    return values
+    return pyramid.columns_of(pyramid.synthesise())[:, column]
 
 
 def _columns_of(pyramid: Pyramid, channel: str | None) -> list[int]:
     if channel is None:
-        return [0] if pyramid.signal == "z" else [0, 1, 2]
+        return list(range(len(pyramid.coordinates)))
     if channel not in pyramid.channels:
         raise OptionError(
             "there is no {0} {given}; the pyramid has {channels}.",

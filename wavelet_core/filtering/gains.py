@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from .._validate import frozen
 from ..errors import OptionError
 from ..lifting.linear_map import Transform
@@ -95,8 +93,7 @@ def relifted(pyramid: Pyramid, mesh: TriangleMesh) -> Pyramid:
             of_pyramid=n_vertices,
             expected=pyramid.attribute_names,
         )
-    first = 2 if pyramid.signal == "z" else 0
-    columns = np.column_stack([mesh.vertices[:, first:], mesh.attributes])
+    columns = pyramid.columns_of(mesh)
     coarse, details = Transform.from_pyramid(pyramid).analyse(columns)
     steps = tuple(
         replace(step, details=frozen(detail))

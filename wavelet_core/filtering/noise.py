@@ -133,9 +133,7 @@ def channel_noise(pyramid: Pyramid, channel: str = "z") -> float:
     """Return the standard deviation of white noise in a channel; see :func:`estimate_noise`."""
     column = channel_index(pyramid.channels, channel)
     mesh = pyramid.synthesise()
-    first = 2 if pyramid.signal == "z" else 0
-    values = np.column_stack([mesh.vertices, mesh.attributes])[:, first + column]
-    return estimate_noise(mesh, values)
+    return estimate_noise(mesh, pyramid.columns_of(mesh)[:, column])
 
 
 def deviation_of(details: FloatArray) -> float:

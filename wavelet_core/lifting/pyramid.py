@@ -169,9 +169,19 @@ class Pyramid:
         return len(self.steps)
 
     @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates among the channels, which come first."""
+        return SIGNALS[self.signal].coordinates
+
+    @property
     def attribute_names(self) -> tuple[str, ...]:
         """Names of the attributes among the channels."""
-        return self.channels[len(SIGNALS[self.signal].coordinates) :]
+        return self.channels[len(self.coordinates) :]
+
+    def columns_of(self, mesh: TriangleMesh) -> FloatArray:
+        """Return the values of the channels at the vertices of a mesh, ``(n_vertices, k)``."""
+        lifted = mesh.vertices[:, 3 - len(self.coordinates) :]
+        return np.hstack([lifted, mesh.attributes])
 
     def n_vertices(self, level: int) -> int:
         """Return the number of vertices of a level."""

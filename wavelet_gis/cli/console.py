@@ -53,7 +53,9 @@ class Console:
     def figures(self, values: Mapping[str, Any]) -> None:
         """Print the figures of the command and what was noted, if JSON was asked for."""
         if self._as_json:
-            notes = [note.to_dict(self._name_of) for note in self._notes]
+            noted = [note.to_dict(self._name_of) for note in self._notes]
+            # Those that a pyramid file holds come first; the figures have them already.
+            notes = [*values.get("notes", ()), *noted]
             print(json.dumps(_plain({**values, "notes": notes})))
 
     def table(self, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:

@@ -40,15 +40,22 @@ def flag_names(
     >>> [flag_names(parser)(name) for name in ("max_rms", "fit", "repair")]
     ['--rmse', 'no --no-fit', 'repair']
     """
+    own = _flags_of([command])
+    of_others = _flags_of(others)
+
+    def name_of(parameter: str) -> str:
+        synonym = _OF_THE_CORE.get(parameter, parameter)
+        return own.get(parameter) or own.get(synonym) or of_others.get(parameter, parameter)
+
+    return name_of
+
+
+def _flags_of(parsers: Sequence[argparse.ArgumentParser]) -> dict[str, str]:
     flags: dict[str, str] = {}
-    for parser in (command, *others):
+    for parser in parsers:
         for action in parser._actions:
             if action.option_strings:
                 flag = action.option_strings[0]
                 is_switch_off = isinstance(action, argparse._StoreFalseAction)
                 flags.setdefault(action.dest, f"no {flag}" if is_switch_off else flag)
-
-    def name_of(parameter: str) -> str:
-        return flags.get(parameter) or flags.get(_OF_THE_CORE.get(parameter, ""), parameter)
-
-    return name_of
+    return flags

@@ -14,7 +14,7 @@ from wavelet_gis.errors import OutputFileError
 
 __all__ = ["check_output", "new_file"]
 
-_EXISTS = "{path}: this file exists; give another name or allow {0}."
+_EXISTS = "{path}: this file exists; give another name, or {0} to replace it."
 
 
 def check_output(

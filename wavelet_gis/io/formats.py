@@ -77,6 +77,7 @@ MESH_FORMATS = (
     MeshFormat(
         ".ply", "PLY", "wavelet_gis.io.meshes:write_ply", "3D software", keeps_attributes=True
     ),
+    MeshFormat(".obj", "OBJ", "wavelet_gis.io.meshes:write_obj", "3D software"),
     MeshFormat(
         ".2dm",
         "2DM",
@@ -84,7 +85,6 @@ MESH_FORMATS = (
         "QGIS (as a mesh layer), hydraulic models",
         has_prj=True,
     ),
-    MeshFormat(".obj", "OBJ", "wavelet_gis.io.meshes:write_obj", "3D software"),
     MeshFormat(".stl", "STL", "wavelet_gis.io.cad:write_stl", "3D printers", has_local_origin=True),
     MeshFormat(
         ".glb",

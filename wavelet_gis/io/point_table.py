@@ -48,14 +48,14 @@ def read_point_table(path: str | os.PathLike[str], attributes: tuple[str, ...] =
     Raises
     ------
     InputFileError
-        When the file is missing, is no such table, or lacks a column.
+        When the file is missing, is not such a table, or lacks a column.
     """
     name = os.fspath(path)
     try:
         with Path(path).open(encoding="utf-8-sig") as stream:
             first = stream.readline(10_000)
     except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is no text"
+        reason = getattr(error, "strerror", None) or "it is not text"
         raise InputFileError(f"{name}: the table cannot be read ({reason}).") from error
     separator = next((mark for mark in (",", ";", "\t") if mark in first), None)
     words = [word.strip().strip('"') for word in first.strip().split(separator)]
@@ -72,7 +72,7 @@ def read_point_table(path: str | os.PathLike[str], attributes: tuple[str, ...] =
         )
     except (ValueError, IndexError) as error:
         raise InputFileError(
-            f"{name}: this is no table of numbers by column ({error}); give x, y and z in every "
+            f"{name}: this is not a table of numbers by column ({error}); give x, y and z in every "
             "line."
         ) from error
     return PointTable(values[:, :3], values[:, 3:], attributes)

@@ -174,7 +174,7 @@ def _read_band(dataset: DatasetReader, path: Path, band: int | None) -> tuple[De
         )
     if band is None and dataset.count > 1:
         raise InputFileError(
-            "{path}: the raster has {n_bands} bands; choose the one with the elevations with {0}.",
+            "{path}: the raster has {n_bands} bands; choose the one with the elevations by {0}.",
             "band",
             path=path,
             n_bands=dataset.count,

@@ -316,8 +316,7 @@ def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
     """
     if not dem.valid.any():
         raise InputFileError(
-            "every cell of the raster is nodata, so there is no terrain in it; "
-            "check the band and the nodata value."
+            "every cell of the raster is nodata; check the band and the nodata value."
         )
     n_rows, n_columns = dem.geometry.shape
     elevation = np.zeros(dem.geometry.shape)

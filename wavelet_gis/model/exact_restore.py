@@ -70,7 +70,7 @@ class ExactColumn:
         n = len(approximate)
         if self.remainder is not None and len(self.remainder) != n:
             raise PyramidError(
-                f"there are corrections for {len(self.remainder)} values, not for {n}; "
+                f"there are {len(self.remainder)} remainders for {n} values; "
                 "the file is damaged, write it anew."
             )
         restored = _on_grid(approximate, self.quantum, self.remainder)

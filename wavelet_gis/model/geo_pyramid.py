@@ -126,5 +126,5 @@ class GeoPyramid:
         if self.frame.z_scale == 1.0:
             return vectors
         scaled = vectors.copy()
-        scaled[:, 0 if self.pyramid.signal == "z" else 2] /= self.frame.z_scale
+        scaled[:, self.pyramid.channels.index("z")] /= self.frame.z_scale
         return scaled

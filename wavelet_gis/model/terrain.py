@@ -110,8 +110,7 @@ def terrain_of_dem(
     """
     if not dem.valid.any():
         raise InputFileError(
-            f"{name}: every cell of the raster is nodata, so there is no terrain in it; check the "
-            "band and the nodata value."
+            f"{name}: every cell of the raster is nodata; check the band and the nodata value."
         )
     with collected() as notes:
         frame, unit = frame_of_bounds(name, system, grid_bounds(dem.geometry), vertical_unit)
@@ -215,7 +214,7 @@ def frame_of_bounds(
     Raises
     ------
     CrsError
-        When the CRS or its extent cannot serve.
+        When the CRS or its extent cannot be used.
 
     Warns
     -----

@@ -167,7 +167,7 @@ def frame_of_coordinates(
     MeshError
         When there is not one point.
     CrsError
-        When the CRS or its extent cannot serve.
+        When the CRS or its extent cannot be used.
     """
     if len(coordinates) == 0:
         raise MeshError(

@@ -189,5 +189,5 @@ def shape_layer(geo: GeoPyramid, level: int) -> Layer:
 
 def _file_scale(geo: GeoPyramid, channel: str | None) -> float:
     """Working units in one of the file's, for a channel."""
-    is_height = channel == "z" or (channel is None and geo.pyramid.signal == "z")
+    is_height = channel == "z" or (channel is None and geo.pyramid.coordinates == ("z",))
     return geo.frame.z_scale if is_height else 1.0

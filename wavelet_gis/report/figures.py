@@ -101,6 +101,7 @@ def report_data(
         "shown": [_error_figures(geo, finest, level, errors[level]) for level in chosen],
         "parameters": dict(pyramid.parameters),
         "history": list(geo.history),
+        "notes": [note.to_dict() for note in geo.notes],
         "versions": _versions(),
     }
     return ReportData(figures, shown, {level: errors[level] for level in chosen})

@@ -323,6 +323,9 @@ def _parameters(figures: dict[str, Any]) -> str:
     if figures["history"]:
         changes = "".join(f"<li>{html.escape(change)}</li>" for change in figures["history"])
         parts.append(f"<h3>Changes since the analysis</h3><ul>{changes}</ul>")
+    if figures["notes"]:
+        notes = "".join(f"<li>{html.escape(note['text'])}</li>" for note in figures["notes"])
+        parts.append(f"<h3>Notes on the input and its analysis</h3><ul>{notes}</ul>")
     return '<div class="made">' + "".join(parts) + "</div>"
 
 

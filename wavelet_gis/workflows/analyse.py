@@ -7,19 +7,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Unpack
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core import analyse as core_analyse
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.origin import Original
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected
-from wavelet_gis.workflows.clock import Clock
-from wavelet_gis.workflows.inputs import require_terrain
-from wavelet_gis.workflows.options import WaveletOptions, core_options
-from wavelet_gis.workflows.progress import Progress, part_of
+from wavelet_gis.progress import Clock, part_of
+from wavelet_gis.workflows.options import (
+    WaveletOptions,
+    core_options,
+    note_unreached_size,
+    require_terrain,
+    working_rules,
+)
 from wavelet_gis.workflows.reconstruct import check_restored_output, reconstruct
 from wavelet_gis.workflows.save import Layers, save, write_pyramid_file
-from wavelet_gis.workflows.stopping import note_unreached_size, working_rules
 
 __all__ = ["Analysis", "analyse"]
 

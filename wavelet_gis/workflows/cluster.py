@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core import Progress
 from wavelet_core.errors import OptionError
 from wavelet_core.features.signature import energy_signature, plain_features, scale_features
 from wavelet_gis.io.atomic import check_output
@@ -23,6 +24,7 @@ from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.vertex_raster import Bands, label_band
+from wavelet_gis.progress import part_of
 from wavelet_gis.workflows.classify import (
     Validation,
     cluster_summary,
@@ -31,9 +33,8 @@ from wavelet_gis.workflows.classify import (
     spatial_folds,
     validate_classes,
 )
-from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.labels import cloud_with_classes
-from wavelet_gis.workflows.progress import Progress, part_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 
 __all__ = ["Labelled", "check_label_output", "classify", "cluster"]
 
@@ -132,7 +133,9 @@ def check_label_output(
     suffixes = (PYRAMID_SUFFIX, *RASTER_SUFFIXES, *CLOUD_SUFFIXES)
     check_output(path, overwrite=overwrite, suffixes=suffixes, inputs=inputs)
     if suffix_of(path) in CLOUD_SUFFIXES and not is_learned:
-        raise OptionError("clusters are no LAS classes; write .gpkg or .tif, or use {0}.", "learn")
+        raise OptionError(
+            "clusters are no LAS classes; write .gpkg or .tif, or learn classes with {0}.", "learn"
+        )
 
 
 def cluster(

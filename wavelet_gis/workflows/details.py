@@ -1,4 +1,4 @@
-"""Pyramid to what its details tell: strength by scale, what each level adds, shape by scale."""
+"""Details of a pyramid: their strength by level, what each level adds, shape by level."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
+from wavelet_core import Progress
 from wavelet_core.errors import OptionError
 from wavelet_core.features.shape import SHAPE_NAMES
 from wavelet_core.features.spectrum import vertex_details
@@ -25,12 +26,11 @@ from wavelet_gis.products.vertex_tables import (
     shape_layer,
     vertex_layer,
 )
-from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
-from wavelet_gis.workflows.progress import Progress
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 
 __all__ = ["QUANTITIES", "Details", "LevelDetails", "Quantity", "details"]
 
-#: What may be asked for: root mean square detail around each vertex, a column a level; what each
+#: What may be asked for: root mean square detail around each vertex, a column per level; what each
 #: level adds, signed; the level at which each vertex went; slope, aspect and curvatures.
 Quantity = Literal["energy", "component", "level", "shape"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
@@ -54,7 +54,7 @@ class LevelDetails(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Details:
-    """What the details of a pyramid tell.
+    """The details of a pyramid, to be shown as a raster, a layer or figures.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class Details:
         return rows
 
     def raster(self, cell_size: float | None = None, progress: Progress | None = None) -> Bands:
-        """Return the quantity as a raster, one band a level or a measure of shape.
+        """Return the quantity as a raster, one band per level or per measure of shape.
 
         Parameters
         ----------
@@ -161,7 +161,7 @@ def details(
     level: int | None = None,
     channel: str | None = None,
 ) -> Details:
-    """Return what the details of a pyramid tell.
+    """Return the details of a pyramid, to be shown as a raster, a layer or figures.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def details(
     Raises
     ------
     OptionError
-        Another quantity, or a level for what is no shape.
+        Another quantity, or a level for anything but the shape.
     """
     geo = pyramid_of(data)
     if what not in QUANTITIES:
@@ -193,6 +193,6 @@ def details(
 
 
 def check_level_of(what: str, level: int | None) -> None:
-    """Raise `OptionError` if a level was given for what is no shape."""
+    """Raise `OptionError` if a level was given for anything but the shape."""
     if level is not None and what != "shape":
         raise OptionError("{0} is for {1} shape; leave it out, or ask for it.", "level", "what")

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from wavelet_core import OptionError, Pyramid, TriangleMesh, band_gains, denoise, relifted
+from wavelet_core import OptionError, Progress, Pyramid, TriangleMesh, band_gains, denoise, relifted
 from wavelet_core.filtering.gains import channel_index
 from wavelet_core.filtering.noise import estimate_noise
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
-from wavelet_gis.workflows.progress import Progress, part_of
+from wavelet_gis.progress import part_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
 from wavelet_gis.workflows.save import Layers, write_pyramid_file
 

@@ -1,15 +1,28 @@
-"""The options of a wavelet analysis, as all workflows take them."""
+"""What workflows take: a terrain or a pyramid, the options of an analysis, rules to stop by."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, TypedDict
+from typing import Any, Protocol, TypedDict
 
 from numpy.typing import ArrayLike
 
+from wavelet_core import Pyramid
 from wavelet_core.errors import OptionError
+from wavelet_gis.crs.frame import LocalFrame
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.terrain import Terrain
+from wavelet_gis.notes import note
 
-__all__ = ["WaveletOptions", "core_options"]
+__all__ = [
+    "HoldsPyramid",
+    "WaveletOptions",
+    "core_options",
+    "note_unreached_size",
+    "pyramid_of",
+    "require_terrain",
+    "working_rules",
+]
 
 
 class WaveletOptions(TypedDict, total=False):
@@ -63,3 +76,95 @@ def core_options(options: WaveletOptions) -> dict[str, Any]:
             "update",
         )
     return {"prediction": design, "partition": "quadric", **given}
+
+
+def working_rules(
+    frame: LocalFrame,
+    *,
+    levels: int | None = None,
+    target_vertices: int | None = None,
+    max_error: float | None = None,
+    max_rms: float | None = None,
+) -> dict[str, float | int | None]:
+    """Return the stop rules of `wavelet_core.analyse`, heights in the working unit.
+
+    Parameters
+    ----------
+    frame : LocalFrame
+        Of the terrain.
+    levels, target_vertices : int, optional
+        As the core takes them.
+    max_error, max_rms : float, optional
+        In the input's unit of z.
+    """
+    unit = frame.z_scale
+    return {
+        "levels": levels,
+        "target_vertices": target_vertices,
+        "max_error": None if max_error is None else max_error * unit,
+        "max_rms": None if max_rms is None else max_rms * unit,
+    }
+
+
+def note_unreached_size(pyramid: Pyramid, target_vertices: int | None) -> None:
+    """Note that the coarsest level has more vertices than were asked for, and why.
+
+    Parameters
+    ----------
+    pyramid : Pyramid
+        As analysed.
+    target_vertices : int or None
+        What was asked for.
+    """
+    reached = pyramid.n_vertices(0)
+    if target_vertices is None or reached <= target_vertices:
+        return
+    # Why it stopped is the core's knowledge; a core that keeps no record has the size told alone.
+    record = getattr(pyramid, "stop", None)
+    note(
+        "size_not_reached",
+        "the coarsest level has {n_vertices:,} vertices where {target_vertices:,} were asked for"
+        + ("" if record is None else "; {reason}"),
+        n_vertices=reached,
+        target_vertices=target_vertices,
+        reason=None if record is None else str(record).rstrip("."),
+    )
+
+
+class HoldsPyramid(Protocol):
+    """A result that holds a pyramid, such as an `Analysis`."""
+
+    @property
+    def geo(self) -> GeoPyramid:
+        """The pyramid."""
+
+
+def pyramid_of(data: HoldsPyramid | GeoPyramid) -> GeoPyramid:
+    """Return the pyramid that a workflow was given.
+
+    Parameters
+    ----------
+    data : Analysis, Filtered or GeoPyramid
+        What analysing, filtering or loading returned.
+
+    Raises
+    ------
+    OptionError
+        Something else.
+    """
+    geo = getattr(data, "geo", data)
+    if isinstance(geo, GeoPyramid):
+        return geo
+    raise OptionError(
+        f"a {type(data).__name__} is not a pyramid; give what 'wavelet_gis.analyse' or "
+        "'wavelet_gis.load' returns."
+    )
+
+
+def require_terrain(data: object) -> None:
+    """Raise `OptionError` unless this is a terrain that can be analysed."""
+    if not isinstance(data, Terrain):
+        raise OptionError(
+            f"a {type(data).__name__} is not a terrain that can be analysed; give what "
+            "'wavelet_gis.open' returns for a raster, a point cloud or a TIN."
+        )

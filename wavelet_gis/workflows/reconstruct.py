@@ -21,7 +21,7 @@ from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.origin import Original
-from wavelet_gis.workflows.inputs import HoldsPyramid, pyramid_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.save import write_tin
 
 __all__ = ["Reconstruction", "check_restored_output", "reconstruct"]

@@ -13,7 +13,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_gis.io.atomic import check_output, new_file
 from wavelet_gis.io.formats import (
@@ -23,7 +23,6 @@ from wavelet_gis.io.formats import (
     suffix_of,
 )
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.progress import Progress
 
 __all__ = [
     "Layers",
@@ -70,7 +69,7 @@ def save(result: Any, path: Path, *, overwrite: bool = False, **options: Any) ->
     Raises
     ------
     OptionError
-        Something that is no result of a workflow.
+        Something that no workflow returned.
     OutputFileError
         A suffix that does not fit, a file that exists, or a folder that cannot be written.
     """
@@ -109,7 +108,7 @@ def check_surface_output(
     OutputFileError
         See `wavelet_gis.io.atomic.check_output`.
     OptionError
-        Options of a raster for what is none.
+        Options of a raster for an output that is not one.
     """
     suffixes = (PYRAMID_SUFFIX, *MESH_SUFFIXES, *RASTER_SUFFIXES)
     check_output(path, overwrite=overwrite, suffixes=suffixes, inputs=inputs)

@@ -6,19 +6,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Unpack
 
+from wavelet_core import Progress
 from wavelet_core import analyse as core_analyse
 from wavelet_core.accuracy.fitted_heights import fitted
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import cover_of
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected
+from wavelet_gis.progress import Clock, part_of
 from wavelet_gis.workflows.analyse import Analysis
-from wavelet_gis.workflows.clock import Clock
-from wavelet_gis.workflows.inputs import require_terrain
-from wavelet_gis.workflows.options import WaveletOptions, core_options
-from wavelet_gis.workflows.progress import Progress, part_of
-from wavelet_gis.workflows.stopping import note_unreached_size, working_rules
-from wavelet_gis.workflows.surface import Surface, measured
+from wavelet_gis.workflows.extract import Surface, measured
+from wavelet_gis.workflows.options import (
+    WaveletOptions,
+    core_options,
+    note_unreached_size,
+    require_terrain,
+    working_rules,
+)
 
 __all__ = ["Simplified", "simplify"]
 

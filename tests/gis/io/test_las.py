@@ -214,7 +214,7 @@ def with_wkt(path, text, geotiff=False):
 def test_a_broken_wkt_is_told_of_and_can_be_overridden(tmp_path, text):
     path = write_las(tmp_path / "a.las")
     with_wkt(path, text)
-    with pytest.warns(CrsWarning, match=r"broken .* --crs"):
+    with pytest.warns(CrsWarning, match=r"broken .* with crs"):
         terrain = open_terrain(path)
     assert terrain.system.wkt is None
     assert open_terrain(path, crs="EPSG:25832").system.kind == "projected"

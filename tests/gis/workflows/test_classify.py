@@ -236,7 +236,7 @@ def test_classes_that_are_not_there_are_refused(halves, tmp_path):
         cloud_with_classes(halves, np.zeros(4800, dtype=np.int64))
     terrain = open_terrain(write_las(tmp_path / "a.las"), carry=False)
     geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=1))
-    with pytest.raises(OptionError, match="without --drop-other-dimensions"):
+    with pytest.raises(OptionError, match="again, with carry"):
         labels_from_las(geo)
 
 

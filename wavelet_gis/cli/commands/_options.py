@@ -76,7 +76,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
 
 def open_given(arguments: argparse.Namespace) -> Terrain:
     """Return the terrain that the input arguments name."""
-    from wavelet_gis.workflows.open_data import open_input
+    from wavelet_gis.workflows.open import open_input
 
     return open_input(
         arguments.input,
@@ -100,9 +100,11 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         help="a design of the paper, prediction and update in one, such as GLMN or NNLSMN; with "
         "the paper's partition unless --partition names another",
     )
-    group.add_argument("--partition", metavar="NAME", help="which vertices are removed")
+    group.add_argument("--partition", metavar="NAME", help="which vertices are removed at a level")
     group.add_argument("--prediction", metavar="NAME", help="how removed vertices are predicted")
-    group.add_argument("--update", metavar="NAME", help="how details are handed to those kept")
+    group.add_argument(
+        "--update", metavar="NAME", help="how details are passed on to the vertices kept"
+    )
     group.add_argument(
         "--signal", metavar="z|xyz", help="lift elevation and attributes, or x and y too"
     )
@@ -113,7 +115,12 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         help="largest share of the vertices that a level may take; smaller ones are slower and "
         "better",
     )
-    group.add_argument("--bending-weight", type=float, metavar="W", help="of the paper's cost")
+    group.add_argument(
+        "--bending-weight",
+        type=float,
+        metavar="W",
+        help="weight of bending energy in the paper's cost",
+    )
     group.add_argument(
         "--attribute-weights",
         type=_weights,
@@ -175,7 +182,7 @@ def length(text: str) -> float:
     """Return a length from the command line."""
     value = float(text)
     if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is no length above 0")
+        raise argparse.ArgumentTypeError(f"{text} is not a length above 0")
     return value
 
 
@@ -188,7 +195,7 @@ def _classes(text: str) -> tuple[int, ...]:
     try:
         classes = tuple(int(part) for part in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of classes such as 2,9") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of classes such as 2,9") from None
     if not all(0 <= number <= 255 for number in classes):
         raise argparse.ArgumentTypeError("classes are 0 to 255")
     return classes
@@ -198,4 +205,6 @@ def _weights(text: str) -> tuple[float, ...]:
     try:
         return tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of numbers such as 1,0.5") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a list of numbers such as 1,0.5"
+        ) from None

@@ -62,8 +62,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output
+    from wavelet_gis.progress import Clock
     from wavelet_gis.workflows.analyse import analyse
-    from wavelet_gis.workflows.clock import Clock
     from wavelet_gis.workflows.save import save
 
     check_output(

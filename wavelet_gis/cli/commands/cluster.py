@@ -78,7 +78,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.workflows.cluster import check_label_output
-    from wavelet_gis.workflows.open_data import load
+    from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.save import save
 
     is_learned = arguments.learn is not None
@@ -154,7 +154,7 @@ def _numbers(text: str) -> tuple[int, ...]:
     try:
         return tuple(int(part) for part in text.split(",") if part.strip())
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of classes such as 0,1") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of classes such as 0,1") from None
 
 
 def _pair(text: str) -> tuple[int, int]:
@@ -162,4 +162,4 @@ def _pair(text: str) -> tuple[int, int]:
         source, target = text.split("=")
         return int(source), int(target)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no pair such as 3=5") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a pair such as 3=5") from None

@@ -1,4 +1,4 @@
-"""``details FILE OUT``: spectra of the vertices, band rasters, shape by scale, the picture."""
+"""``details FILE OUT``: spectra of the vertices, rasters by level, shape by scale, the picture."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from wavelet_gis.io.formats import (
 )
 
 ORDER = 70
-HELP = "Write what each band of scales holds: as points (GPKG), raster bands (TIF) or a picture."
+HELP = "Write what the details of each level hold, as points (GPKG), a raster (TIF) or a picture."
 
 SUFFIXES = (PYRAMID_SUFFIX, *RASTER_SUFFIXES, *PICTURE_SUFFIXES)
 
@@ -31,9 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--what",
         choices=WHAT,
         default="energy",
-        help="energy: root mean square detail around each vertex, one band a level (default); "
-        "component: what each level adds, signed; level: at which each vertex went; shape: slope, "
-        "aspect and curvatures of the surface of --level",
+        help="energy: root mean square detail around each vertex, one raster band per level "
+        "(default); component: what each level adds, signed; level: at which each vertex went; "
+        "shape: slope, aspect and curvatures of the surface of --level",
     )
     parser.add_argument(
         "--level", type=int, metavar="K", help="of --what shape; by default the input itself"
@@ -55,7 +55,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output, new_file
     from wavelet_gis.workflows.details import check_level_of, details
-    from wavelet_gis.workflows.open_data import load
+    from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.save import save
 
     check_output(

@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.workflows.extract import extract
-    from wavelet_gis.workflows.open_data import load
+    from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.save import check_surface_output, save
 
     options = surface_options(arguments)

@@ -1,4 +1,4 @@
-"""``filter FILE OUT``: smooth, sharpen, isolate a band of scales, or take out noise."""
+"""``filter FILE OUT``: smooth, sharpen, isolate a range of scales, or take out noise."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="LEVEL=G",
         help="multiply the details of a level: 0 drops them, 2 doubles them; again for others",
     )
-    band = scales.add_mutually_exclusive_group()
-    band.add_argument(
+    kept = scales.add_mutually_exclusive_group()
+    kept.add_argument(
         "--band",
         dest="levels",
         type=_levels,
         metavar="LO:HI",
         help="keep the details of these levels only",
     )
-    band.add_argument(
+    kept.add_argument(
         "--band-metres",
         dest="metres",
         type=_metres,
@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output
     from wavelet_gis.workflows.filtering import filter_pyramid
-    from wavelet_gis.workflows.open_data import load, origin_kind
+    from wavelet_gis.workflows.open import load, origin_kind
     from wavelet_gis.workflows.reconstruct import check_restored_output
     from wavelet_gis.workflows.save import save
 
@@ -121,7 +121,7 @@ def _gain(text: str) -> tuple[int, float]:
     try:
         return int(level), float(gain)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no LEVEL=G such as 5=0.5") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not LEVEL=G, such as 5=0.5") from None
 
 
 def _levels(text: str) -> tuple[int, int]:
@@ -129,7 +129,7 @@ def _levels(text: str) -> tuple[int, int]:
     try:
         return int(low), int(high)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no LO:HI such as 2:4") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not LO:HI, such as 2:4") from None
 
 
 def _metres(text: str) -> tuple[float, float]:
@@ -139,11 +139,11 @@ def _metres(text: str) -> tuple[float, float]:
             raise ValueError
         return float(low or 0.0), float(high or "inf")
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no LO:HI such as 5:50 or 10:") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not LO:HI, such as 5:50 or 10:") from None
 
 
 def _sigma(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None

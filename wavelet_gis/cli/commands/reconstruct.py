@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output
-    from wavelet_gis.workflows.open_data import load, origin_kind
+    from wavelet_gis.workflows.open import load, origin_kind
     from wavelet_gis.workflows.reconstruct import check_restored_output, reconstruct
     from wavelet_gis.workflows.save import save
 
