@@ -225,7 +225,7 @@ def point_cloud_to_filtered_dem():
     """Point cloud to filtered DEM."""
     model = Model(
         "Point cloud to filtered DEM",
-        "Takes the ground points of a LAS or LAZ file, takes out the noise of the scanner while "
+        "Takes the ground points of a LAS or LAZ file, removes the noise of the scanner while "
         "banks and ridges stay, and gives a DEM of any cell size.",
     )
     model.input(
@@ -257,7 +257,7 @@ def point_cloud_to_filtered_dem():
     model.step(
         "filter",
         "terrainwavelets:filterlevels",
-        "Take out the noise",
+        "Remove the noise",
         INPUT=result("analyse", "OUTPUT"),
         DENOISE=True,
         SIGMA_OF_NOISE=input_("SIGMA_OF_NOISE"),
@@ -279,7 +279,7 @@ def dem_to_denoised_dem_and_report():
     """DEM to denoised DEM, difference and report."""
     model = Model(
         "DEM to denoised DEM and report",
-        "Takes out the noise of a DEM while banks and ridges stay, and shows what was taken: the "
+        "Removes the noise of a DEM while banks and ridges stay, and shows what was taken: the "
         "difference as a raster, and a report on the quality of every level.",
     )
     model.input(QgsProcessingParameterRasterLayer("INPUT", "DEM"), "Raster of elevations.")
@@ -297,7 +297,7 @@ def dem_to_denoised_dem_and_report():
     model.step(
         "filter",
         "terrainwavelets:filterlevels",
-        "Take out the noise",
+        "Remove the noise",
         INPUT=result("analyse", "OUTPUT"),
         DENOISE=True,
         SIGMA_OF_NOISE=input_("SIGMA_OF_NOISE"),

@@ -92,7 +92,7 @@ class AnalyseTin(AnalysisAlgorithm):
             ),
             tr(
                 "Points with Z or with a field of elevations, or polygons with Z that are all "
-                "triangles. Of points at the same x and y the lowest counts."
+                "triangles. Of points at the same x and y the lowest is taken."
             ),
         )
         self.add(
@@ -146,12 +146,17 @@ class AnalyseTin(AnalysisAlgorithm):
                 ANY_FIELD,
                 optional=True,
             ),
-            tr("Points where it holds anything but 0, false or NULL stay at every level."),
+            tr("Points whose value is anything but 0, false or NULL stay at every level."),
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterBoolean("LOCK_BREAKLINES", tr("Lock breaklines"), True),
-            tr("Keep the vertices of breaklines, and so the lines, at every level."),
+            QgsProcessingParameterBoolean(
+                "LOCK_BREAKLINES", tr("Lock breaklines and outline"), True
+            ),
+            tr(
+                "Keep the vertices of breaklines and of the outline, and so the lines, at every "
+                "level."
+            ),
             advanced=True,
         )
         self.add(
@@ -319,7 +324,7 @@ class AnalyseTin(AnalysisAlgorithm):
         )
         self.locked = tin.is_marked
         if request.flag("LOCK_BREAKLINES"):
-            self.locked = tin.is_marked | tin.is_on_line
+            self.locked = tin.is_marked | tin.is_on_line | tin.is_on_outline
         return terrain_of_mesh(name, tin.mesh, system, frame, unit)
 
 

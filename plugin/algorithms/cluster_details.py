@@ -116,7 +116,7 @@ class ClusterDetails(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterNumber("SEED", tr("Seed"), WHOLE_NUMBER, 0, minValue=0),
-            tr("Of samples and starts; the same seed gives the same result."),
+            tr("Of the random samples and starts; the same seed gives the same result."),
             advanced=True,
         )
 
@@ -149,7 +149,7 @@ class ClusterDetails(PyramidAlgorithm):
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterBoolean("VALIDATE", tr("Tell the accuracy"), False),
+            QgsProcessingParameterBoolean("VALIDATE", tr("Report the accuracy"), False),
             tr(
                 "Predict blocks of the map from the others, and tell how many of their labels come "
                 "out right. Takes several times as long."

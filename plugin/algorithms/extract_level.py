@@ -53,7 +53,7 @@ class ExtractLevel(PyramidAlgorithm):
         return tr(
             "Synthesises the terrain at one level of a pyramid and gives it as triangles, "
             "vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the "
-            "analysis says how large and how exact each level is."
+            "analysis says how large and how accurate each level is."
         )
 
     def declare(self) -> None:

@@ -1,4 +1,4 @@
-"""Noise taken out of a pyramid, or chosen scales damped, boosted or isolated."""
+"""Noise removed from a pyramid, or chosen scales damped, boosted or isolated."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class FilterLevels(PyramidAlgorithm):
 
     def shortDescription(self) -> str:
         """Return what it does in one line."""
-        return tr("Noise taken out of a pyramid, or chosen scales damped, boosted or isolated")
+        return tr("Noise removed from a pyramid, or chosen scales damped, boosted or isolated")
 
     def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
@@ -62,9 +62,9 @@ class FilterLevels(PyramidAlgorithm):
         """Return what it does."""
         return tr(
             "Changes chosen scales of the terrain: damps or boosts the details of each level by a "
-            "gain, keeps a band of levels or of sizes on the ground, or takes out noise while "
+            "gain, keeps a band of levels or of sizes on the ground, or removes noise while "
             "banks and ridges stay. It gives the filtered pyramid and the filtered DEM, point "
-            "cloud or TIN. Noise is taken out first, then gains apply."
+            "cloud or TIN. Noise is removed first, then gains apply."
         )
 
     def declare(self) -> None:
@@ -106,7 +106,7 @@ class FilterLevels(PyramidAlgorithm):
 
     def _add_noise_parameters(self) -> None:
         self.add(
-            QgsProcessingParameterBoolean("DENOISE", tr("Take out noise"), False),
+            QgsProcessingParameterBoolean("DENOISE", tr("Remove noise"), False),
             tr("White noise, such as that of a laser scanner."),
         )
         self.add(
@@ -132,7 +132,7 @@ class FilterLevels(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterString("CHANNELS", tr("Channels"), "z", optional=True),
-            tr("Which to take noise from, separated by commas: z and attributes."),
+            tr("Channels to remove noise from, separated by commas: z and attributes."),
             advanced=True,
         )
 
@@ -209,9 +209,7 @@ class FilterLevels(PyramidAlgorithm):
         sizes = _sizes(request)
         flags = request.flag("DENOISE") or request.flag("DROP_COARSE")
         if not (gains or levels or sizes or flags):
-            return tr(
-                "Nothing would change: take out noise, list gains, or choose levels or sizes."
-            )
+            return tr("Nothing would change: remove noise, list gains, or choose levels or sizes.")
         if levels and sizes:
             return tr("Choose levels or sizes to keep, not both.")
         return None

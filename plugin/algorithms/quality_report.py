@@ -48,7 +48,7 @@ class QualityReport(PyramidAlgorithm):
         """Declare parameters and outputs."""
         self.add_pyramid_parameter()
         self.add(
-            QgsProcessingParameterString("LEVELS", tr("Levels to picture"), optional=True),
+            QgsProcessingParameterString("LEVELS", tr("Levels shown as pictures"), optional=True),
             tr(
                 "Numbers separated by commas. Empty for those with about a quarter and a twentieth "
                 "of the vertices, and the coarsest."

@@ -56,9 +56,9 @@ class SimplifyDem(DemInput):
     def about(self) -> str:
         """Return what it does."""
         return tr(
-            "Gives the TIN of a number of vertices, or the TIN that is exact enough, with a small "
-            "error at all cells of the DEM. Say one of the three: how many vertices, the largest "
-            "error, or the root mean square error."
+            "Gives the TIN of a number of vertices, or the TIN that is accurate enough, with a "
+            "small error at all cells of the DEM. Give one of three: the number of vertices, the "
+            "largest error, or the root mean square error."
         )
 
     def declare(self) -> None:
@@ -135,9 +135,7 @@ class SimplifyDem(DemInput):
     def refusal(self, request: Request) -> str | None:
         """Refuse anything but one rule."""
         if sum(request.has(name) for name in RULES) != 1:
-            return tr(
-                "Say one of the three: the number of vertices, the largest error, or the RMSE."
-            )
+            return tr("Give one of three: the number of vertices, the largest error, or the RMSE.")
         return None
 
     def packages(self, request: Request) -> tuple[Package, ...]:

@@ -275,7 +275,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Keep the vertices of breaklines, and so the lines, at every level.</source>
+    <source>Keep the vertices of breaklines and of the outline, and so the lines, at every level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -290,7 +290,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Lock breaklines</source>
+    <source>Lock breaklines and outline</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -325,12 +325,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Points where it holds anything but 0, false or NULL stay at every level.</source>
+    <source>Points whose value is anything but 0, false or NULL stay at every level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Points with Z or with a field of elevations, or polygons with Z that are all triangles. Of points at the same x and y the lowest counts.</source>
+    <source>Points with Z or with a field of elevations, or polygons with Z that are all triangles. Of points at the same x and y the lowest is taken.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -495,7 +495,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Of samples and starts; the same seed gives the same result.</source>
+    <source>Of the random samples and starts; the same seed gives the same result.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -506,6 +506,11 @@
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Predict blocks of the map from the others, and tell how many of their labels come out right. Takes several times as long.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Report the accuracy</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -521,11 +526,6 @@
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Summary of the clusters</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Tell the accuracy</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -715,7 +715,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the analysis says how large and how exact each level is.</source>
+    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the analysis says how large and how accurate each level is.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -765,7 +765,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Changes chosen scales of the terrain: damps or boosts the details of each level by a gain, keeps a band of levels or of sizes on the ground, or takes out noise while banks and ridges stay. It gives the filtered pyramid and the filtered DEM, point cloud or TIN. Noise is taken out first, then gains apply.</source>
+    <source>Changes chosen scales of the terrain: damps or boosts the details of each level by a gain, keeps a band of levels or of sizes on the ground, or removes noise while banks and ridges stay. It gives the filtered pyramid and the filtered DEM, point cloud or TIN. Noise is removed first, then gains apply.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Channels to remove noise from, separated by commas: z and attributes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -880,12 +885,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Noise taken out of a pyramid, or chosen scales damped, boosted or isolated</source>
+    <source>Noise removed from a pyramid, or chosen scales damped, boosted or isolated</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Nothing would change: take out noise, list gains, or choose levels or sizes.</source>
+    <source>Nothing would change: remove noise, list gains, or choose levels or sizes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -896,6 +901,11 @@
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Pyramids in random order, each denoised, whose average leaves no traces of triangles. 0 thresholds the details of this pyramid alone, which is quick.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Remove noise</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -925,17 +935,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Take out noise</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>What the details of a level are multiplied by: 0 drops them, 0.5 halves, 2 doubles. Levels that are not listed stay. Level 0 is the coarsest.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Which to take noise from, separated by commas: z and attributes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -970,7 +970,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>Levels to picture</source>
+    <source>Levels shown as pictures</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1080,7 +1080,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Gives the TIN of a number of vertices, or the TIN that is exact enough, with a small error at all cells of the DEM. Say one of the three: how many vertices, the largest error, or the root mean square error.</source>
+    <source>Give one of three: the number of vertices, the largest error, or the RMSE.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Gives the TIN of a number of vertices, or the TIN that is accurate enough, with a small error at all cells of the DEM. Give one of three: the number of vertices, the largest error, or the root mean square error.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1136,11 +1141,6 @@
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Root mean square error over all cells, in the unit of elevation.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Say one of the three: the number of vertices, the largest error, or the RMSE.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -173,7 +173,12 @@ class TestParametersLeftOut:
     def test_levels_and_magnitude(self, run_model, provider, dem):
         shown = provider.algorithm("dem_to_coarse_tin").parameterDefinition("LEVELS")
         _, layers = run_model(
-            "dem_to_coarse_tin", {"INPUT": dem, "details_by_level": "TEMPORARY_OUTPUT"}
+            "dem_to_coarse_tin",
+            {
+                "INPUT": dem,
+                "pyramid": "TEMPORARY_OUTPUT",
+                "details_by_level": "TEMPORARY_OUTPUT",
+            },
         )
         levels = layers["Details by level"].uniqueValues(1)
         assert levels == set(range(shown.defaultValue()))

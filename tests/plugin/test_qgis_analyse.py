@@ -330,12 +330,12 @@ class TestPointsAndTins:
                 for feature in made["COARSE_TIN"].getFeatures()
             ]
         )
-        for part in (line, ring):
+        for name, part in (("line", line), ("ring", ring)):
             distance = heights_on(triangles, samples_along(part)) - terrain(
                 samples_along(part) - xyz[0, :2]
             )
             assert np.isfinite(distance).sum() > 900
-            assert np.nanmax(np.abs(distance)) <= tolerance + 1e-6
+            assert np.nanmax(np.abs(distance)) <= tolerance + 1e-6, name
         assert 0 < made["RMSE_LINES"] <= made["MAX_ERROR_LINES"] <= tolerance + 1e-9
 
     def test_a_field_gives_the_elevation_and_a_selection_is_respected(self, run, tmp_path):
