@@ -24,9 +24,13 @@ from ..ui.translation import tr
 from ._dem_input import DemInput
 
 if TYPE_CHECKING:
+    from wavelet_gis.model.terrain import Terrain
+
     from ..ui.dependencies import Package
 
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
+#: Share of the vertices that stays where no rule is given.
+DEFAULT_SHARE = 0.05
 
 
 class SimplifyDem(DemInput):
@@ -58,7 +62,8 @@ class SimplifyDem(DemInput):
         return tr(
             "Gives the TIN of a number of vertices, or the TIN that is accurate enough, with a "
             "small error at all cells of the DEM. Give one of three: the number of vertices, the "
-            "largest error, or the root mean square error."
+            "largest error, or the root mean square error; with none, a twentieth of the cells "
+            "become vertices."
         )
 
     def declare(self) -> None:
@@ -133,8 +138,8 @@ class SimplifyDem(DemInput):
         add_error_outputs(self, tr("at all cells"))
 
     def refusal(self, request: Request) -> str | None:
-        """Refuse anything but one rule."""
-        if sum(request.has(name) for name in RULES) != 1:
+        """Refuse more than one rule."""
+        if sum(request.has(name) for name in RULES) > 1:
             return tr("Give one of three: the number of vertices, the largest error, or the RMSE.")
         return None
 
@@ -156,7 +161,7 @@ class SimplifyDem(DemInput):
         }
         simplified = simplify(
             terrain,
-            vertices=request.whole("VERTICES"),
+            vertices=_vertices(request, terrain),
             max_error=request.number("MAX_ERROR"),
             max_rms=request.number("RMSE"),
             fit=request.flag("FIT"),
@@ -182,3 +187,10 @@ class SimplifyDem(DemInput):
                 tr("No output is chosen; choose a TIN, a raster, a mesh or a pyramid.")
             )
         return {**figures, **results}
+
+
+def _vertices(request: Request, terrain: Terrain) -> int | None:
+    """Return the number of vertices that is wanted; None where another rule is given."""
+    if any(request.has(name) for name in RULES):
+        return request.whole("VERTICES")
+    return max(round(DEFAULT_SHARE * terrain.mesh.n_vertices), 3)

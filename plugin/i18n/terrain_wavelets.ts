@@ -1085,7 +1085,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Gives the TIN of a number of vertices, or the TIN that is accurate enough, with a small error at all cells of the DEM. Give one of three: the number of vertices, the largest error, or the root mean square error.</source>
+    <source>Gives the TIN of a number of vertices, or the TIN that is accurate enough, with a small error at all cells of the DEM. Give one of three: the number of vertices, the largest error, or the root mean square error; with none, a twentieth of the cells become vertices.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -242,12 +242,15 @@ class TestSimplify:
         from qgis.core import QgsProcessingContext
 
         algorithm = provider.algorithm("simplifydem").create()
-        for rules in ({}, {"VERTICES": 5, "RMSE": 1.0}):
-            is_fine, message = algorithm.checkParameterValues(
-                {"INPUT": dem, **rules}, QgsProcessingContext()
-            )
-            assert not is_fine
-            assert "one of the three" in message
+        is_fine, message = algorithm.checkParameterValues(
+            {"INPUT": dem, "VERTICES": 5, "RMSE": 1.0}, QgsProcessingContext()
+        )
+        assert not is_fine
+        assert "one of three" in message
+
+    def test_without_a_rule_a_twentieth_of_the_cells_stays(self, run, dem):
+        made = run("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT"})
+        assert made["N_VERTICES"] == round(made["N_INPUT_VERTICES"] / 20)
 
 
 def test_report_needs_no_network(run, pyramid, tmp_path):
