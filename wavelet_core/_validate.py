@@ -48,7 +48,9 @@ def _can_be_changed(array: NDArray) -> bool:
 def are_equal(one: Any, other: Any) -> bool:
     """Return whether two dataclasses of one class have equal fields, arrays by their values."""
     return all(
-        _is_equal(getattr(one, field.name), getattr(other, field.name)) for field in fields(one)
+        _is_equal(getattr(one, field.name), getattr(other, field.name))
+        for field in fields(one)
+        if field.compare
     )
 
 

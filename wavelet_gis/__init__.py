@@ -11,10 +11,11 @@ all of `model`, `products` and `workflows`, and of `io` what QGIS uses, run on n
 sqlite3 alone.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
+# What type checkers take for True; `typing` itself would delay the program's care for interrupts.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from wavelet_gis.report.page import report_page
     from wavelet_gis.workflows.analyse import Analysis, analyse
     from wavelet_gis.workflows.cluster import Labelled, classify, cluster
@@ -79,9 +80,11 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
     module, attribute = _HOMES[name].split(":")
     return getattr(import_module(f"{__name__}.{module}"), attribute)
 

@@ -75,7 +75,7 @@ def run(data: Path, pictures: Path) -> dict[str, Any]:
             )
         figures[name] = {"n_vertices": mesh.n_vertices, "steps": rows}
         print(f"  {name}: {figures[name]}", flush=True)
-        draw(mesh, pyramid, pictures / f"paper-frequency-{name.split('_')[0]}.png")
+        draw(mesh, pyramid, pictures / f"frequency-{name.split('_')[0]}.png")
     return figures
 
 

@@ -48,8 +48,8 @@ def run(sample: Sample, pictures: Path) -> dict[str, Any]:
         sample.mesh, levels=LEVELS, partition="quadric", prediction="GLMN", signal="z"
     )
     fixed = in_plan.errors()[::-1]
-    draw_errors(sample, designs, pictures / f"paper-rmse-{sample.name}.png")
-    draw_levels(sample, pictures / f"paper-levels-{sample.name}.png")
+    draw_errors(sample, designs, pictures / f"rmse-{sample.name}.png")
+    draw_levels(sample, pictures / f"levels-{sample.name}.png")
     return {
         "figure": sample.figure,
         "note": sample.note,

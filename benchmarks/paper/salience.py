@@ -63,7 +63,7 @@ def run(data: Path, pictures: Path, size: int = 900) -> dict[str, Any]:
             if design == "GLMN":
                 coarse[name] = level
             print(f"  {design} {name}: {figures[f'{design}, {name}']}", flush=True)
-    draw(mesh, coarse, pictures / "paper-salience.png")
+    draw(mesh, coarse, pictures / "salience.png")
     return figures
 
 

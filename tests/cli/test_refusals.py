@@ -173,8 +173,11 @@ def test_options_that_do_not_fit_a_raster(refused, tif, tmp_path, arguments, wha
     assert what in refused("analyse", tif, tmp_path / name, *options)
 
 
-def test_a_parameter_has_the_name_of_its_command_s_flag(refused, tif, tmp_path):
+def test_a_parameter_has_the_name_of_its_command_s_flag(refused, tif, pyramid, tmp_path):
     assert "--vertices is 1;" in refused("simplify", tif, tmp_path / "a.ply", "--vertices", "1")
+    assert "more than --vertices 9;" in refused(
+        "extract", pyramid, tmp_path / "a.ply", "--vertices", "9"
+    )
     assert "--target-vertices is 1;" in refused(
         "analyse", tif, tmp_path / "a.gpkg", "--target-vertices", "1"
     )

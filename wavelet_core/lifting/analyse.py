@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +15,10 @@ from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
-from ..partition.error_guided import SurfaceRules, analyse_surface
+from ..partition.error_guided import DEFAULT_LEVELS, SurfaceRules, analyse_surface
 from ..partition.orderings import LevelView, Partition
 from ..partition.registry import PARTITIONS, PartitionInput
+from ..partition.stopping import stop_record
 from ..progress import Progress, report
 from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
@@ -48,6 +50,7 @@ def analyse(
     seed: int | None = None,
     norm: str | None = None,
     removal_fraction: float | None = None,
+    outline_tolerance: float = 0.0,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
 
@@ -56,7 +59,9 @@ def analyse(
     mesh : TriangleMesh
         A manifold surface, with or without outline and holes.
     levels : int, optional
-        The most levels to build. By default 12, or, with another stop rule, as many as it takes.
+        The most levels to build. By default as many as another stop rule takes; without one, 12
+        with a partition of the paper, and with ``partition="surface"`` 24 after those that thin
+        flat parts alone, which cost nothing.
     partition : {"surface", "quadric", "colouring", "random"}, optional
         Which vertices go: those that raise the vertical errors at all input vertices least; by
         the paper's cost; or regardless of any, in the order of their index or a random one. By
@@ -93,9 +98,14 @@ def analyse(
         What ``partition="surface"`` keeps small: the mean square of the vertical errors, or the
         largest. By default ``"max"`` if ``max_error`` is given, else ``"rms"``.
     removal_fraction : float, optional
-        Largest share of the vertices that a level of ``partition="surface"`` may take; by default
-        0.25, and 0.1 for ``norm="max"`` with ``target_vertices``. Twice that share while more than
-        twice ``target_vertices`` are left.
+        Largest share of the vertices that a level of ``partition="surface"`` may take, besides
+        those that cost nothing; by default 0.25, and 0.1 for ``norm="max"`` with
+        ``target_vertices``. Twice that share while more than twice ``target_vertices`` are left.
+    outline_tolerance : float
+        How far from the outline of each level, holes included, the vertices of the input's outline
+        may lie, in the unit of x and y, with ``partition="surface"`` and its own filters. With 0 an
+        outline vertex goes only where the outline runs straight. Input vertices that a level does
+        not cover any more count with their error at the nearest place of its outline.
 
     Returns
     -------
@@ -146,6 +156,7 @@ def analyse(
         seed=seed,
         norm=norm,
         removal_fraction=removal_fraction,
+        outline_tolerance=outline_tolerance,
     )
     announce_fallback(mesh.n_vertices)
     return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
@@ -185,7 +196,7 @@ class _Analysis:
             self._report(0.0)
         steps = self._surface_steps() if self._is_surface_lifting() else self._steps()
         self._report(1.0)
-        return Pyramid(
+        pyramid = Pyramid(
             faces=frozen(self._mesh.faces.astype(np.int32)),
             horizontal=None if not self._in_plan else frozen(self._mesh.vertices[:, :2]),
             coarse=frozen(self._coefficients),
@@ -196,27 +207,35 @@ class _Analysis:
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
         )
+        record = stop_record(
+            self._stopped_by,
+            pyramid._faces_of(0),
+            self._all_locked[pyramid.vertex_ids(0)],
+            self._options.target_vertices,
+        )
+        return replace(pyramid, stop=record)
 
     def _steps(self) -> list[Step]:
         """Partition, predict and update, each by its own rule."""
         self._partition = self._make_partition()
         steps: list[Step] = []
-        while len(steps) < self._options.levels:
+        most = self._most_levels()
+        self._stopped_by = "levels"
+        while len(steps) < most:
             step = self._step()
             if step is None:
                 break
             steps.append(step)
         return steps
 
+    def _most_levels(self) -> int:
+        """Return the number of levels, as far as it is known beforehand."""
+        levels = self._options.levels
+        return DEFAULT_LEVELS if levels is None else levels
+
     def _is_surface_lifting(self) -> bool:
         """Whether partition, prediction and update are those that know of each other."""
-        options = self._options
-        return (
-            options.partition == "surface"
-            and options.prediction == "barycentric"
-            and options.update in ("minimum_norm", "none")
-            and self._in_plan
-        )
+        return self._options.is_error_guided
 
     def _surface_steps(self) -> list[Step]:
         """Keep the surface: partition, prediction and update in one, see `surface`."""
@@ -229,6 +248,7 @@ class _Analysis:
             target_vertices=options.target_vertices or 0,
             max_error=np.inf if options.max_error is None else options.max_error,
             max_rms=np.inf if options.max_rms is None else options.max_rms,
+            outline_tolerance=options.outline_tolerance,
         )
         result = analyse_surface(
             self._mesh.vertices[:, :2],
@@ -240,7 +260,8 @@ class _Analysis:
             self._report_size,
         )
         self._coefficients = result.coarse
-        return result.steps
+        self._stopped_by = result.stopped_by
+        return [Step(*step) for step in result.steps]
 
     def _make_partition(self) -> Partition:
         columns = np.hstack([self._mesh.vertices[:, 2:], self._mesh.attributes])
@@ -259,6 +280,7 @@ class _Analysis:
         n_vertices = len(self._coefficients)
         max_odd = n_vertices - (self._options.target_vertices or 0)
         if max_odd <= 0:
+            self._stopped_by = "target"
             return None
         connectivity = build_connectivity(self._faces, n_vertices)
         self._report()
@@ -266,6 +288,7 @@ class _Analysis:
         view = LevelView(self._faces, points, plan, connectivity, self._locked, self._in_plan)
         split = self._partition.split(view, max_odd)
         if len(split.odd) == 0:
+            self._stopped_by = "nothing_left"
             return None
         self._report()
         even = even_positions(split.odd, n_vertices)
@@ -282,6 +305,7 @@ class _Analysis:
         )
         faces = merged_faces(self._faces, merge_map(*split, n_vertices))
         if self._breaks_a_tolerance(coarse, even, faces):
+            self._stopped_by = "tolerance"
             return None
         self._partition.descend(split, even, filter_matrix)
         self._faces, self._coefficients, self._integrals = faces, coarse, integrals
@@ -326,7 +350,7 @@ class _Analysis:
         n_input = self._mesh.n_vertices
         if fraction is None:
             expected = self._options.target_vertices or n_input * EXPECTED_KEPT ** min(
-                self._options.levels, 40
+                self._most_levels(), 40
             )
             gone = n_input - (len(self._coefficients) if n_vertices is None else n_vertices)
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)

@@ -10,21 +10,21 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from ..errors import OptionError, UnstableDesignWarning
-from ..partition.registry import NORMS, PARTITIONS, REMOVAL_FRACTION, Norm, PartitionRow
+from ..partition.registry import NORMS, PARTITIONS, Norm, PartitionRow
 from .prediction import PREDICTIONS, Prediction
 from .signal import SIGNALS, Signal
 from .update import UPDATES, Update
 
 __all__ = [
     "DEFAULT_LEVELS",
-    "REMOVAL_FRACTION",
     "AnalysisOptions",
     "parse_design",
     "refused_pair",
     "resolve_options",
 ]
 
-#: Levels when neither a number nor a stop rule is given: the paper's experiments use 12.
+#: Levels with the paper's partition when neither a number nor a stop rule is given: its
+#: experiments use 12.
 DEFAULT_LEVELS = 12
 #: More levels than any input needs; the analysis stops by itself when nothing can be removed.
 MAX_LEVELS = 1000
@@ -34,7 +34,7 @@ MAX_LEVELS = 1000
 class AnalysisOptions:
     """The options of :func:`wavelet_core.analyse`, resolved and checked."""
 
-    levels: int
+    levels: int | None
     partition: str
     prediction: str
     update: str
@@ -47,14 +47,27 @@ class AnalysisOptions:
     seed: int
     norm: str
     removal_fraction: float
+    outline_tolerance: float
 
     def as_dict(self) -> dict[str, Any]:
         """Return the options as plain numbers, strings and lists."""
         return asdict(self) | {"attribute_weights": list(self.attribute_weights)}
 
+    @property
+    def is_error_guided(self) -> bool:
+        """Whether partition, prediction and update are those that know of each other."""
+        return _is_error_guided(self.partition, self.prediction, self.update, self.signal)
+
     def of_partition(self) -> dict[str, Any]:
         """Return the options that the partition looks at."""
         return {name: getattr(self, name) for name in PARTITIONS[self.partition].options}
+
+
+def _is_error_guided(partition: str, prediction: str, update: str, signal: str) -> bool:
+    return (partition, prediction, signal) == ("surface", "barycentric", "z") and update in (
+        "minimum_norm",
+        "none",
+    )
 
 
 class Design(NamedTuple):
@@ -141,6 +154,7 @@ def resolve_options(
     seed: int | None,
     norm: str | None,
     removal_fraction: float | None,
+    outline_tolerance: float,
 ) -> AnalysisOptions:
     """Return the options with defaults filled in and short names spelled out.
 
@@ -167,8 +181,28 @@ def resolve_options(
     largest, mean = _number("max_error", max_error), _number("max_rms", max_rms)
     has_stop_rule = any(rule is not None for rule in (targets, largest, mean))
     most_levels = _whole("levels", levels, 0, MAX_LEVELS)
-    if most_levels is None:
-        most_levels = MAX_LEVELS if has_stop_rule else DEFAULT_LEVELS
+    is_error_guided = _is_error_guided(
+        of_partition.name, of_prediction.name, of_update.name, of_signal.name
+    )
+    if most_levels is None and has_stop_rule:
+        most_levels = MAX_LEVELS
+    elif most_levels is None and not is_error_guided:
+        most_levels = DEFAULT_LEVELS
+    tolerance = _number("outline_tolerance", outline_tolerance)
+    if tolerance and not is_error_guided:
+        raise OptionError(
+            "{0} is used by {1} surface with {2} barycentric, {3} minimum_norm or none and {4} z; "
+            "here they are {partition}, {prediction}, {update} and {signal}.",
+            "outline_tolerance",
+            "partition",
+            "prediction",
+            "update",
+            "signal",
+            partition=of_partition.name,
+            prediction=of_prediction.name,
+            update=of_update.name,
+            signal=of_signal.name,
+        )
     return AnalysisOptions(
         levels=most_levels,
         partition=of_partition.name,
@@ -183,6 +217,7 @@ def resolve_options(
         seed=_or(0, _whole("seed", seed, 0, 2**63 - 1)),
         norm=of_norm.name,
         removal_fraction=_fraction(removal_fraction, of_norm, targets, largest),
+        outline_tolerance=_or(0.0, tolerance),
     )
 
 

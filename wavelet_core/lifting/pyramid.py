@@ -14,6 +14,7 @@ from .._validate import FloatArray, IntArray, are_equal, counted, frozen, owned
 from ..errors import OptionError, PyramidError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
+from ..partition.stopping import StopRecord
 from ..progress import Progress
 from ._checks import check_parts
 from .signal import SIGNALS
@@ -80,6 +81,8 @@ class Pyramid:
     locked : ndarray of bool, shape (n_vertices,), or None
     parameters : dict
         Every option of the analysis, resolved.
+    stop : StopRecord or None
+        Why the analysis ended; None for a pyramid that comes from elsewhere.
 
     Examples
     --------
@@ -100,6 +103,7 @@ class Pyramid:
     update: str
     locked: NDArray[np.bool_] | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    stop: StopRecord | None = field(default=None, compare=False)
 
     @classmethod
     def from_parts(
@@ -114,6 +118,7 @@ class Pyramid:
         update: str,
         locked: NDArray | None = None,
         parameters: Mapping[str, Any] | None = None,
+        stop: StopRecord | None = None,
     ) -> Pyramid:
         """Return the pyramid of parts that nobody has checked yet, such as those of a file.
 
@@ -133,6 +138,7 @@ class Pyramid:
             update=update,
             locked=None if locked is None else owned(locked, np.bool_),
             parameters=dict(parameters or {}),
+            stop=stop,
         )
 
     # -- a sequence of meshes ----------------------------------------------------------------------

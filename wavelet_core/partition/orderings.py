@@ -161,13 +161,16 @@ class SurfacePartition:
     def split(self, view: LevelView, max_odd: int) -> Split:
         """Label the vertices of a level, the cheapest first."""
         level = self._level
-        level.rank(self._norm, np.inf, np.inf)
-        slots = level.candidates(self._removal_fraction, np.inf)
-        odd = level.independent(slots, max_odd, np.inf)
-        if len(odd) == 0:
-            return Split(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
-        step = level.remove(odd)
-        return Split(step.odd, step.target)
+        while True:
+            level.rank(self._norm, np.inf, np.inf)
+            slots = level.candidates(self._removal_fraction, np.inf)
+            odd = level.independent(slots, max_odd, np.inf)
+            if len(odd) == 0:
+                return Split(np.empty(0, dtype=np.int32), np.empty(0, dtype=np.int32))
+            linked = level.linked(odd)
+            if len(linked) > 0:
+                step = level.remove(linked)
+                return Split(step.odd, step.target)
 
     def descend(self, split: Split, even: NDArray[np.int32], prediction: csr_array) -> None:
         """Carry nothing: the level has been collapsed in place."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .._table import Table
 from .._validate import FloatArray
 from ._mutable_level import SurfaceLevel
+from .error_guided import REMOVAL_FRACTION
 from .orderings import (
     ColouringPartition,
     Partition,
@@ -18,8 +19,6 @@ from .orderings import (
     SurfacePartition,
 )
 
-#: Share of the vertices that a surface-guided level may take, at most.
-REMOVAL_FRACTION = 0.25
 #: The same for the largest error at a given size, which smaller steps keep lower: 5 % on five DEMs.
 MAX_NORM_REMOVAL_FRACTION = 0.1
 

@@ -12,7 +12,12 @@ from collections.abc import Callable, Sequence
 __all__ = ["flag_names"]
 
 #: Parameters of the core that the commands' functions know by another name.
-_OF_THE_CORE = {"target_vertices": "vertices", "sigma": "denoise"}
+_OF_THE_CORE = {
+    "target_vertices": "vertices",
+    "n_vertices": "vertices",
+    "sigma": "denoise",
+    "lengths": "metres",
+}
 
 
 def flag_names(

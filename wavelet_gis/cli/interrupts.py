@@ -16,15 +16,23 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
-from types import FrameType
-from typing import Any
 
 from wavelet_gis._program import PROGRAM
 
-__all__ = ["INTERRUPTED", "TERMINATED", "Interrupted", "Terminated", "ending", "quit_at_once",
-           "raised"]  # fmt: skip
+TYPE_CHECKING = False  # `typing` takes a while to load
+if TYPE_CHECKING:
+    from types import FrameType, TracebackType
+    from typing import Any
+
+__all__ = [
+    "INTERRUPTED",
+    "TERMINATED",
+    "Interrupted",
+    "Raised",
+    "Terminated",
+    "ending",
+    "quit_at_once",
+]
 
 #: Exit codes, as shells give them: 128 and the number of the signal.
 INTERRUPTED, TERMINATED = 130, 143
@@ -43,19 +51,24 @@ def quit_at_once() -> None:
     _install(_quit)
 
 
-@contextmanager
-def raised() -> Iterator[None]:
-    """Raise a signal as `Interrupted` or `Terminated` in the block; undone after it.
+class Raised:
+    """Raise a signal as `Interrupted` or `Terminated` in a ``with`` block; undone after it.
 
     Where `quit_at_once` came before, the process is ours and about to end: signals then stay
     ignored after the block.
     """
-    before = _install(_raise)
-    try:
-        yield
-    finally:
-        if _quit not in before.values():
-            for number, handler in before.items():
+
+    def __enter__(self) -> None:
+        self._before = _install(_raise)
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if _quit not in self._before.values():
+            for number, handler in self._before.items():
                 signal.signal(number, handler)
 
 

@@ -53,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Their complaints come to us as exceptions; printed too they would be noise.
         logging.getLogger(library).addHandler(logging.NullHandler())
         logging.getLogger(library).propagate = False
-    with interrupts.raised():
+    with interrupts.Raised():
         return _run(chosen, console)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,10 +12,17 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.triangulation import delaunay_faces, merge_duplicates
+from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
-from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
+from wavelet_gis.model.exact_restore import (
+    ExactColumn,
+    checksum,
+    exact_column,
+    nearest_of_dtype,
+    number_dtype,
+)
 
 __all__ = ["CloudOrigin", "cloud_mesh"]
 
@@ -246,35 +252,37 @@ class CloudOrigin:
         """
         try:
             return cls._from_parts(fields, arrays)
-        except (KeyError, TypeError, ValueError, OverflowError) as error:
-            if isinstance(error, PyramidError):
-                raise
+        except PyramidError:
+            raise
+        except (KeyError, TypeError, ValueError) as error:
             raise PyramidError(
                 f"the description of the points is damaged ({error}); analyse the input anew."
             ) from error
 
     @classmethod
     def _from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CloudOrigin:
-        n_points = int(fields["n_points"])
-        attributes = tuple(_attribute(described) for described in fields["attributes"])
+        stored = Fields(fields, "the points")
+        n_points = stored.integer("n_points")
+        attributes = tuple(_attribute(described) for described in stored.objects("attributes"))
         cloud = PointCloud(
             integers=np.empty((0, 3), np.int32),
-            scales=np.array(fields["scales"], dtype=np.float64),
-            offsets=np.array(fields["offsets"], dtype=np.float64),
+            scales=np.array(stored.numbers("scales", 3)),
+            offsets=np.array(stored.numbers("offsets", 3)),
             attributes=attributes,
             carried={
-                str(name): arrays[f"source/carried_{k}"] for k, name in enumerate(fields["carried"])
+                name: arrays[f"source/carried_{k}"]
+                for k, name in enumerate(stored.texts("carried"))
             },
             header=arrays["source/header"],
             evlrs=arrays["source/evlrs"],
-            n_in_file=int(fields["n_in_file"]),
-            classes=None if fields["classes"] is None else tuple(map(int, fields["classes"])),
+            n_in_file=stored.integer("n_in_file"),
+            classes=None if stored["classes"] is None else tuple(stored.integers("classes")),
         )
         corrections = None
-        if "ledger" in fields:
+        if "ledger" in stored:
             corrections = tuple(
                 ExactColumn.from_parts(f"source/ledger_{k}", column, arrays)
-                for k, column in enumerate(fields["ledger"])
+                for k, column in enumerate(stored.objects("ledger"))
             )
         origin = cls(
             cloud=cloud,
@@ -286,7 +294,7 @@ class CloudOrigin:
                 arrays[f"source/dropped_attribute_{k}"] for k in range(len(attributes))
             ),
             corrections=corrections,
-            checksum=str(fields["checksum"]),
+            checksum=stored.text("checksum", 200),
         )
         origin._check()
         return origin
@@ -378,17 +386,16 @@ def _emptied(cloud: PointCloud) -> PointCloud:
     )
 
 
-def _attribute(described: dict[str, Any]) -> PointAttribute:
-    dtype = np.dtype(str(described["dtype"]))
-    scale, offset = float(described["scale"]), float(described["offset"])
-    if dtype.kind not in "iuf" or not math.isfinite(scale) or scale == 0:
-        raise ValueError("an attribute that is no number")
-    component = described["component"]
+def _attribute(described: Fields) -> PointAttribute:
+    dtype = number_dtype(described.text("dtype"))
+    scale, offset = described.number("scale"), described.number("offset")
+    if scale == 0:
+        raise ValueError("an attribute with a scale of zero")
     return PointAttribute(
-        name=str(described["name"]),
-        dimension=str(described["dimension"]),
+        name=described.text("name"),
+        dimension=described.text("dimension"),
         values=np.empty(0, dtype),
-        component=None if component is None else int(component),
+        component=None if described["component"] is None else described.integer("component"),
         scale=scale,
         offset=offset,
     )

@@ -14,11 +14,21 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
+from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
+from wavelet_gis.model.exact_restore import (
+    ExactColumn,
+    checksum,
+    exact_column,
+    nearest_of_dtype,
+    number_dtype,
+)
 
 __all__ = ["Dem", "GridGeometry", "InputGrid", "RasterOrigin", "dem_mesh", "grid_bounds"]
+
+#: Rows or columns; GDAL knows no larger rasters.
+_LARGEST_SIDE = 2**31 - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,28 +266,24 @@ class RasterOrigin:
         PyramidError
             When a part is missing, of another type, or does not fit the rest.
         """
+        stored = Fields(fields, "the raster")
         try:
-            n_rows, n_columns = (int(n) for n in fields["shape"])
-            transform = tuple(float(value) for value in fields["transform"])
-            dtype = np.dtype(str(fields["dtype"]))
+            n_rows, n_columns = stored.integers("shape", 1, _LARGEST_SIDE)
+            transform = tuple(stored.numbers("transform", 6))
+            dtype = number_dtype(stored.text("dtype"))
             packed, holes = arrays["source/valid"], arrays["source/holes"]
-            nodata = _number(fields["nodata"])
-            scale, offset = float(fields["scale"]), float(fields["offset"])
-            profile, digest = dict(fields["profile"]), str(fields["checksum"])
+            nodata = _number(stored.text_or_none("nodata", 40))
+            scale, offset = stored.number("scale"), stored.number("offset")
+            profile, digest = dict(stored.fields("profile")), stored.text("checksum", 200)
         except (KeyError, TypeError, ValueError) as error:
             raise PyramidError(
                 f"the description of the raster is damaged ({error}); analyse the input anew."
             ) from error
         n_cells = n_rows * n_columns
         sound = (
-            n_rows > 0
-            and n_columns > 0
-            and dtype.kind in "iuf"
-            and packed.ndim == holes.ndim == 1
+            packed.ndim == holes.ndim == 1
             and packed.dtype == np.uint8
             and len(packed) == -(-n_cells // 8)
-            and len(transform) == 6
-            and all(math.isfinite(value) for value in (*transform, scale, offset))
             and transform[0] * transform[4] != transform[1] * transform[3]
             and scale != 0.0
         )
@@ -362,6 +368,9 @@ def _number(text: str | None) -> float | int | None:
     if text is None:
         return None
     try:
-        return int(text)
+        number = int(text)
     except ValueError:
         return float(text)
+    if not -(2**63) <= number < 2**64:
+        raise ValueError(f"a nodata value of {text}")
+    return number

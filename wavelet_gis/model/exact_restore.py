@@ -25,8 +25,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core.errors import PyramidError
+from wavelet_gis._fields import Fields
 
-__all__ = ["ExactColumn", "checksum", "exact_column", "nearest_of_dtype"]
+__all__ = ["ExactColumn", "checksum", "exact_column", "nearest_of_dtype", "number_dtype"]
+
+#: Integers and floats of up to eight bytes, little-endian.
+_NUMBER_CODES = ("|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8")
 
 #: The quantum is at least this many times the largest error seen at writing.
 SAFETY = 1024.0
@@ -105,9 +109,11 @@ class ExactColumn:
         PyramidError
             When a part is missing or of another type than it must be.
         """
+        stored = Fields(fields, f"the ledger of {name}")
+        quantum = stored.number("quantum")
         try:
-            dtype, quantum = _number_dtype(fields["dtype"]), float(fields["quantum"])
-        except (KeyError, TypeError, ValueError) as error:
+            dtype = number_dtype(stored.text("dtype"))
+        except ValueError as error:
             raise PyramidError(
                 f"the correction {name} is damaged ({error}); write the file anew."
             ) from error
@@ -115,8 +121,7 @@ class ExactColumn:
         rows = arrays.get(f"{name}/exception_rows", np.empty(0, np.int64))
         values = arrays.get(f"{name}/exception_values", np.empty(0, dtype))
         sound = (
-            math.isfinite(quantum)
-            and quantum > 0
+            quantum > 0
             and (remainder is None or (remainder.ndim == 1 and remainder.dtype == np.float64))
             and rows.ndim == values.ndim == 1
             and rows.dtype == np.int64
@@ -213,8 +218,14 @@ def _bits(column: NDArray[Any]) -> NDArray[Any]:
     return np.ascontiguousarray(column).view(f"u{column.dtype.itemsize}")
 
 
-def _number_dtype(text: object) -> np.dtype[Any]:
-    dtype = np.dtype(str(text))
-    if dtype.kind not in "iuf" or dtype.itemsize > 8:
-        raise ValueError(f"data type {text!r}")
-    return dtype
+def number_dtype(text: str) -> np.dtype[Any]:
+    """Return the data type of a code such as ``<f4``, of those that a pyramid file may name.
+
+    Raises
+    ------
+    ValueError
+        Any other text, of which numpy would make something.
+    """
+    if text not in _NUMBER_CODES:
+        raise ValueError(f"data type {text[:20]!r}")
+    return np.dtype(text)

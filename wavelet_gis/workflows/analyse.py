@@ -17,6 +17,7 @@ from wavelet_gis.progress import Clock, part_of
 from wavelet_gis.workflows.options import (
     WaveletOptions,
     core_options,
+    note_moved_outline,
     note_unreached_size,
     require_terrain,
     working_rules,
@@ -171,6 +172,7 @@ def analyse(
             **core_options(options),
         )
         note_unreached_size(pyramid, target_vertices)
+        note_moved_outline(terrain.mesh, pyramid.mesh(0), options.get("outline_tolerance"))
     clock.stage("verify")
     finest = pyramid.synthesise()
     geo = terrain.with_notes([*terrain.notes, *notes]).geo_pyramid(pyramid, finest)

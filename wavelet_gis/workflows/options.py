@@ -7,8 +7,9 @@ from typing import Any, Protocol, TypedDict
 
 from numpy.typing import ArrayLike
 
-from wavelet_core import Pyramid
+from wavelet_core import Pyramid, TriangleMesh
 from wavelet_core.errors import OptionError
+from wavelet_core.partition.outline import area_change
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.terrain import Terrain
@@ -18,6 +19,7 @@ __all__ = [
     "HoldsPyramid",
     "WaveletOptions",
     "core_options",
+    "note_moved_outline",
     "note_unreached_size",
     "pyramid_of",
     "require_terrain",
@@ -30,8 +32,8 @@ class WaveletOptions(TypedDict, total=False):
 
     design : a design of the paper, prediction and update in one, such as ``GLMN``; with the paper's
         partition unless another is named
-    partition, prediction, update, signal, norm, removal_fraction, bending_weight,
-    attribute_weights, locked : see `wavelet_core.analyse`
+    partition, prediction, update, signal, norm, removal_fraction, outline_tolerance,
+    bending_weight, attribute_weights, locked : see `wavelet_core.analyse`
     """
 
     design: str | None
@@ -41,6 +43,7 @@ class WaveletOptions(TypedDict, total=False):
     signal: str | None
     norm: str | None
     removal_fraction: float | None
+    outline_tolerance: float | None
     bending_weight: float | None
     attribute_weights: Sequence[float] | None
     locked: ArrayLike | None
@@ -119,15 +122,36 @@ def note_unreached_size(pyramid: Pyramid, target_vertices: int | None) -> None:
     reached = pyramid.n_vertices(0)
     if target_vertices is None or reached <= target_vertices:
         return
-    # Why it stopped is the core's knowledge; a core that keeps no record has the size told alone.
-    record = getattr(pyramid, "stop", None)
     note(
         "size_not_reached",
-        "the coarsest level has {n_vertices:,} vertices where {target_vertices:,} were asked for"
-        + ("" if record is None else "; {reason}"),
+        "the coarsest level has {n_vertices:,} vertices where {target_vertices:,} were asked for; "
+        "{reason}",
         n_vertices=reached,
         target_vertices=target_vertices,
-        reason=None if record is None else str(record).rstrip("."),
+        reason=str(pyramid.stop).rstrip("."),
+    )
+
+
+def note_moved_outline(
+    original: TriangleMesh, coarse: TriangleMesh, outline_tolerance: float | None
+) -> None:
+    """Note by what the area has changed where the outline was free to move.
+
+    Parameters
+    ----------
+    original, coarse : TriangleMesh
+        Before and after.
+    outline_tolerance : float or None
+        What was allowed.
+    """
+    if not outline_tolerance:
+        return
+    note(
+        "outline_moved",
+        "the outline moved by at most {tolerance:g}; the area changed by {area_change:.4g}, in "
+        "the square of the unit of x and y",
+        tolerance=outline_tolerance,
+        area_change=area_change(original, coarse),
     )
 
 

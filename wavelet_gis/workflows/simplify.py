@@ -19,6 +19,7 @@ from wavelet_gis.workflows.extract import Surface, measured
 from wavelet_gis.workflows.options import (
     WaveletOptions,
     core_options,
+    note_moved_outline,
     note_unreached_size,
     require_terrain,
     working_rules,
@@ -74,6 +75,7 @@ class Simplified(Surface):
             "n_input_vertices": pyramid.n_vertices(pyramid.n_levels),
             **Surface.figures(self),
             "n_levels": pyramid.n_levels,
+            "stopped_by": None if pyramid.stop is None else pyramid.stop.reason,
         }
 
 
@@ -134,6 +136,7 @@ def simplify(
             **core_options(options),
         )
         note_unreached_size(pyramid, vertices)
+        note_moved_outline(terrain.mesh, pyramid.mesh(0), options.get("outline_tolerance"))
     clock.stage("fit")
     mesh = pyramid.mesh(0)
     # Fitting moves no vertex sideways, so the points are located once for both.

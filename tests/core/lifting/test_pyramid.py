@@ -239,10 +239,11 @@ def test_parameters_are_plain_and_complete():
 # --- stop rules -------------------------------------------------------------------------------
 
 
-def test_levels_is_a_maximum_and_12_by_default():
+def test_levels_is_a_maximum_and_as_many_by_default_as_the_partition_wants():
     mesh = synthetic.hills(40, 40)
     assert analyse(mesh, levels=3).n_levels == 3
-    assert analyse(mesh).n_levels == 12
+    assert analyse(mesh).n_levels == 24
+    assert analyse(mesh, prediction="GLMN").n_levels == 12  # the paper's experiments
     assert analyse(mesh, levels=500).n_levels < 500
 
 

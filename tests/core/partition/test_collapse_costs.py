@@ -21,9 +21,9 @@ def squared_errors_of(level, mesh):
     """Measure the level by the independent search of ``surface_errors``."""
     position = np.full(mesh.n_vertices, -1)
     position[level.ids] = np.arange(level.n_vertices)
-    slots = level._mesh.origin.reshape(-1, 3)[level._face_lives]
+    slots = level._mesh.origin.reshape(-1, 3)[level._faces.lives]
     vertices = np.column_stack([mesh.vertices[level.ids, :2], level.heights])
-    coarse = TriangleMesh(vertices, position[level._ids[slots]])
+    coarse = TriangleMesh(vertices, position[level._vertices.ids[slots]])
     errors = surface_errors(coarse, mesh.vertices)
     assert np.isfinite(errors).all()
     return float((errors**2).sum())
@@ -64,15 +64,19 @@ def test_a_finite_cutoff_leaves_the_costs_below_it_as_they_are():
     take_level(whole)
     take_level(part)
     whole.rank("rms", np.inf, np.inf)
-    cutoff = float(np.median(whole._cost[whole._vertex_lives & np.isfinite(whole._cost)]))
-    part._cost[part._is_stale] = -np.inf  # so that all are looked at, whatever they cost before
+    cutoff = float(
+        np.median(whole._vertices.cost[whole._vertices.lives & np.isfinite(whole._vertices.cost)])
+    )
+    part._vertices.cost[
+        part._vertices.is_stale
+    ] = -np.inf  # so that all are looked at, whatever they cost before
     part.rank("rms", np.inf, cutoff)
-    known = part._vertex_lives & ~part._is_stale & (part._cost < cutoff)
+    known = part._vertices.lives & ~part._vertices.is_stale & (part._vertices.cost < cutoff)
     assert known.sum() > 50
-    np.testing.assert_array_equal(part._cost[known], whole._cost[known])
-    np.testing.assert_array_equal(part._target[known], whole._target[known])
-    unknown = part._vertex_lives & part._is_stale
-    assert (whole._cost[unknown] >= cutoff).all()
+    np.testing.assert_array_equal(part._vertices.cost[known], whole._vertices.cost[known])
+    np.testing.assert_array_equal(part._vertices.target[known], whole._vertices.target[known])
+    unknown = part._vertices.lives & part._vertices.is_stale
+    assert (whole._vertices.cost[unknown] >= cutoff).all()
 
 
 def test_a_straight_outline_is_thinned_though_rotation_bends_it_by_rounding():

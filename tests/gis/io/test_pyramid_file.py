@@ -143,6 +143,7 @@ LIGHT = [
     "model.cloud_origin",
     "model.exact_restore",
     "io.array_codec",
+    "io.array_tables",
     "io.geopackage",
     "model.geo_pyramid",
     "io.pyramid_file",

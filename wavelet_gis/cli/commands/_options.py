@@ -116,6 +116,13 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         "better",
     )
     group.add_argument(
+        "--outline-tolerance",
+        type=float,
+        metavar="D",
+        help="let vertices of the outline and of holes go while the outline stays within this "
+        "distance, in the unit of x and y (metres for a CRS in degrees); by default 0",
+    )
+    group.add_argument(
         "--bending-weight",
         type=float,
         metavar="W",
@@ -138,6 +145,7 @@ def wavelet_options(arguments: argparse.Namespace) -> WaveletOptions:
         "update": arguments.update,
         "signal": arguments.signal,
         "removal_fraction": arguments.removal_fraction,
+        "outline_tolerance": arguments.outline_tolerance,
         "bending_weight": arguments.bending_weight,
         "attribute_weights": arguments.attribute_weights,
     }
