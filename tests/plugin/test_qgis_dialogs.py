@@ -21,10 +21,10 @@ ALGORITHMS = (
     "clusterdetails",
     "filterlevels",
     "qualityreport",
-    "DEM to coarse TIN and details",
-    "DEM and breaklines to hydraulic mesh",
-    "Point cloud to filtered DEM",
-    "DEM to denoised DEM and report",
+    "dem_to_coarse_tin",
+    "dem_to_hydraulic_mesh",
+    "point_cloud_to_dem",
+    "dem_to_denoised_dem",
 )
 KEPT = os.environ.get("TERRAIN_WAVELETS_PICTURES")
 
@@ -127,6 +127,7 @@ def map_of(layers, width=900, height=640):
 
 
 def test_styled_results(qgis, pyramid, tmp_path, keep):
+    pytest.importorskip("sklearn")
     import processing
     from qgis.core import QgsProcessingContext, QgsProject
 
@@ -135,8 +136,20 @@ def test_styled_results(qgis, pyramid, tmp_path, keep):
     context.setProject(project)
     for algorithm, parameters in (
         ("extractlevel", {"LEVEL": 0, "TIN": "TEMPORARY_OUTPUT"}),
-        ("detaillayers", {"LAST_LEVEL": 3, "OUTPUT": "TEMPORARY_OUTPUT"}),
+        (
+            "detaillayers",
+            {"LAST_LEVEL": 3, "OUTPUT": "TEMPORARY_OUTPUT", "ENERGY": "TEMPORARY_OUTPUT"},
+        ),
         ("reconstruct", {"DEM": str(tmp_path / "dem.tif")}),
+        (
+            "filterlevels",
+            {"LAST_LEVEL": 4, "DEM": "TEMPORARY_OUTPUT", "DIFFERENCE": "TEMPORARY_OUTPUT"},
+        ),
+        ("extractlevel", {"LEVEL": 1, "VERTICES": "TEMPORARY_OUTPUT"}),
+        (
+            "clusterdetails",
+            {"COUNT": 4, "RASTER": "TEMPORARY_OUTPUT", "OUTPUT": "TEMPORARY_OUTPUT"},
+        ),
     ):
         processing.runAndLoadResults(
             f"terrainwavelets:{algorithm}", {"INPUT": pyramid, **parameters}, context=context
@@ -146,4 +159,9 @@ def test_styled_results(qgis, pyramid, tmp_path, keep):
     keep(map_of([by_name["TIN of the level"]]), "result_tin")
     keep(map_of([by_name["Details by level"], hillshade]), "result_details")
     keep(map_of([hillshade]), "result_hillshade")
+    keep(map_of([by_name["Energy by level"]]), "result_energy")
+    keep(map_of([by_name["Difference of the DEMs"]]), "result_difference")
+    keep(map_of([by_name["Vertices of the level"], hillshade]), "result_vertices")
+    keep(map_of([by_name["Map of clusters"]]), "result_clusters")
+    keep(map_of([by_name["Clustered vertices"]]), "result_clustered_vertices")
     project.clear()

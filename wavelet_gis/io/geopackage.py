@@ -240,7 +240,7 @@ def _reading_fault(name: str, error: Exception) -> str:
     if getattr(error, "sqlite_errorname", "") == "SQLITE_INTERRUPT":
         return (
             "reading it asks for more work than any pyramid file needs; give one that "
-            "'terrain-wavelets analyse' wrote"
+            "an analysis made"
         )
     if os.path.exists(f"{name}-wal"):
         return (
@@ -249,7 +249,7 @@ def _reading_fault(name: str, error: Exception) -> str:
         )
     return (
         f"this is no GeoPackage, or a damaged one ({_short(error)}); give a pyramid file that "
-        "'terrain-wavelets analyse' wrote"
+        "an analysis made"
     )
 
 

@@ -502,14 +502,14 @@ def _require_tables(connection: sqlite3.Connection) -> bool:
     if missing := set(_TABLES) - table_names(connection):
         raise InputFileError(
             f"this GeoPackage holds no wavelet pyramid (no table {', '.join(sorted(missing))}); "
-            "give one that 'terrain-wavelets analyse' wrote."
+            "give one that an analysis made."
         )
     columns = {table: ordinary_columns(connection, table) for table in _TABLES}
     for table, needed in _COLUMNS.items():
         if missing := needed - columns[table]:
             raise InputFileError(
                 f"this GeoPackage holds no wavelet pyramid of ours (no column {min(missing)} in "
-                f"{table}); give one that 'terrain-wavelets analyse' wrote."
+                f"{table}); give one that an analysis made."
             )
     return "checksum" in columns["wavelet_arrays"]
 

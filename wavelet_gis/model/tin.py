@@ -37,11 +37,13 @@ class ConstrainedTin(NamedTuple):
 
     mesh : TriangleMesh
     is_on_line : (n_vertices,) bool, the vertices of the breaklines
+    is_on_outline : (n_vertices,) bool, the vertices of the outline
     is_marked : (n_vertices,) bool, the points that were marked
     """
 
     mesh: TriangleMesh
     is_on_line: BoolArray
+    is_on_outline: BoolArray
     is_marked: BoolArray
 
 
@@ -98,6 +100,8 @@ def tin_with_lines(
     edges = _edges_of(lines, n_points, merged.representative)
     on_line = np.zeros(len(vertices), dtype=bool)
     on_line[n_points : n_points + n_breakline] = True
+    on_outline = np.zeros(len(vertices), dtype=bool)
+    on_outline[n_points + n_breakline :] = True
     marked = np.zeros(len(vertices), dtype=bool)
     if is_marked is not None:
         marked[:n_points] = is_marked
@@ -112,6 +116,7 @@ def tin_with_lines(
     return ConstrainedTin(
         mesh,
         _any_of(on_line, merged.representative, count),
+        _any_of(on_outline, merged.representative, count),
         _any_of(marked, merged.representative, count),
     )
 
