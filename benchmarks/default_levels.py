@@ -65,11 +65,17 @@ def measured(path, levels):
 def row_of(figures):
     """Return the row of the table."""
     shown = np.unique(np.linspace(0, figures["n_levels"], N_SHOWN).round().astype(int))
-    cells = [f"{level}: {figures['curve'][level][0]:,} / {figures['curve'][level][1]:.3g}"
-             for level in shown]
+    cells = [
+        f"{level}: {figures['curve'][level][0]:,} / {figures['curve'][level][1]:.3g}"
+        for level in shown
+    ]
     share = figures["curve"][0][0] / max(figures["n_relief"], 1)
-    head = [figures["dem"], f"{figures['n_vertices']:,}", f"{figures['n_relief']:,}",
-            f"{100 * share:.2g} %"]
+    head = [
+        figures["dem"],
+        f"{figures['n_vertices']:,}",
+        f"{figures['n_relief']:,}",
+        f"{100 * share:.2g} %",
+    ]
     return "| " + " | ".join(head + cells) + " |"
 
 

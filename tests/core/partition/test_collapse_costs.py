@@ -69,8 +69,12 @@ def test_a_finite_cutoff_leaves_the_costs_below_it_as_they_are():
     take_level(whole)
     take_level(part)
     whole.rank("rms", np.inf, np.inf)
-    cutoff = float(np.median(whole._vertices.cost[whole._vertices.lives & np.isfinite(whole._vertices.cost)]))
-    part._vertices.cost[part._vertices.is_stale] = -np.inf  # so that all are looked at, whatever they cost before
+    cutoff = float(
+        np.median(whole._vertices.cost[whole._vertices.lives & np.isfinite(whole._vertices.cost)])
+    )
+    part._vertices.cost[
+        part._vertices.is_stale
+    ] = -np.inf  # so that all are looked at, whatever they cost before
     part.rank("rms", np.inf, cutoff)
     known = part._vertices.lives & ~part._vertices.is_stale & (part._vertices.cost < cutoff)
     assert known.sum() > 50
@@ -111,11 +115,22 @@ def link_tests_of(mesh):
             a = ring[j]
             if indexed.kind[a] > BOUNDARY:
                 continue  # pinched: its half-edges are not one walk
-            apart = [k for k in range(size) if 1 < (gap := abs(k - j)) and (
-                gap < size - 1 or n_sides < size)]
+            apart = [
+                k
+                for k in range(size)
+                if 1 < (gap := abs(k - j)) and (gap < size - 1 or n_sides < size)
+            ]
             joined = [
-                are_joined(a, ring[k], faces, indexed.star_indptr, indexed.star, none_made,
-                           nothing, nothing)
+                are_joined(
+                    a,
+                    ring[k],
+                    faces,
+                    indexed.star_indptr,
+                    indexed.star,
+                    none_made,
+                    nothing,
+                    nothing,
+                )
                 for k in apart
             ]
             met = meets_link_condition(a, ring, 0, size, n_sides, origin, twin, outgoing)
