@@ -444,7 +444,7 @@ class SurfaceLevel:
         twin._faces = self._faces.copied()
         twin._outline = self._outline._replace(lives=self._outline.lives.copy())
         twin._mesh = HalfEdges(*(array.copy() for array in self._mesh))
-        twin._moments = Moments(*(array.copy() for array in self._moments))
+        twin._moments = Moments._make(array.copy() for array in self._moments)
         twin._surface = self._surface._replace(z=self._surface.z.copy())
         twin._points = self._points._replace(
             start=self._points.start.copy(), n_points=self._points.n_points.copy()

@@ -109,7 +109,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         "rmse": float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
         "max_error": float(np.abs(covered).max(initial=0.0)),
         "n_levels": pyramid.n_levels,
-        "stopped_by": pyramid.stop.reason,
+        "stopped_by": pyramid.stop.reason if pyramid.stop else None,
         "area_change": area_change(terrain.mesh, mesh),
         "seconds": round(perf_counter() - began, 3),
     }
@@ -119,7 +119,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"{figures['max_error']:.4g} ({terrain.vertical_unit}) at all input points; "
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
-    if pyramid.stop.misses_target:
+    if pyramid.stop and pyramid.stop.misses_target:
         console.say(str(pyramid.stop))
     if arguments.outline_tolerance:
         console.say(
