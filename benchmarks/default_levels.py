@@ -49,7 +49,7 @@ def measured(path, levels):
     pyramid = analyse(mesh, levels=levels)
     seconds = time.perf_counter() - start
     curve = []
-    for _, coarse in pyramid.meshes():
+    for coarse in pyramid:
         errors = surface_errors(coarse, mesh.vertices)
         curve.append((coarse.n_vertices, float(np.sqrt(np.nanmean(errors**2)))))
     return {

@@ -9,15 +9,9 @@ from numpy.typing import NDArray
 
 from .._table import Table
 from .._validate import FloatArray
+from . import orderings
 from ._mutable_level import SurfaceLevel
 from .error_guided import REMOVAL_FRACTION
-from .orderings import (
-    ColouringPartition,
-    Partition,
-    QuadricPartition,
-    RandomPartition,
-    SurfacePartition,
-)
 
 #: The same for the largest error at a given size, which smaller steps keep lower: 5 % on five DEMs.
 MAX_NORM_REMOVAL_FRACTION = 0.1
@@ -44,7 +38,7 @@ class PartitionRow(NamedTuple):
     """One partition: a row of :data:`PARTITIONS`.
 
     name : str, what `analyse` takes
-    make : callable, from a PartitionInput to a Partition
+    make : callable, from a PartitionInput to a orderings.Partition
     help : str, one line for lists
     equation : str, where the paper has it; empty for what is beyond the paper
     options : tuple of str, the parameters of `analyse` that it, and no other, looks at
@@ -53,7 +47,7 @@ class PartitionRow(NamedTuple):
     """
 
     name: str
-    make: Callable[[PartitionInput], Partition]
+    make: Callable[[PartitionInput], orderings.Partition]
     help: str
     equation: str = ""
     options: tuple[str, ...] = ()
@@ -61,11 +55,11 @@ class PartitionRow(NamedTuple):
     needs_upright: bool = False
 
 
-def _surface(source: PartitionInput) -> Partition:
+def _surface(source: PartitionInput) -> orderings.Partition:
     level = SurfaceLevel(
         source.plan, source.heights, source.faces, source.locked, with_update=False
     )
-    return SurfacePartition(level, **source.options)
+    return orderings.SurfacePartition(level, **source.options)
 
 
 #: The partitions. A new one is a class with `split` and `descend` and a row here, and no more: the
@@ -81,16 +75,16 @@ PARTITIONS = Table(
             needs_upright=True,
         ),
         PartitionRow(
-            "quadric", lambda source: QuadricPartition(**source.options),
+            "quadric", lambda source: orderings.QuadricPartition(**source.options),
             "those of least cost by generalised quadrics and bending energy", "Algorithms 1 and 2",
             options=("bending_weight",),
         ),
         PartitionRow(
-            "colouring", lambda source: ColouringPartition(),
+            "colouring", lambda source: orderings.ColouringPartition(),
             "in the order of their index, regardless of shape", "Fig. 8",
         ),
         PartitionRow(
-            "random", lambda source: RandomPartition(**source.options),
+            "random", lambda source: orderings.RandomPartition(**source.options),
             "in random order, for pyramids that are averaged",
             options=("seed",),
         ),

@@ -22,6 +22,7 @@ from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
 from wavelet_gis.cli import commands, interrupts
 from wavelet_gis.cli.console import Console
 from wavelet_gis.cli.flags import flag_names
+from wavelet_gis.cli.table_help import TableHelp
 
 __all__ = ["main"]
 
@@ -137,7 +138,9 @@ def _parser() -> argparse.ArgumentParser:
 def _add_command(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser], name: str, module: ModuleType
 ) -> argparse.ArgumentParser:
-    parser = subparsers.add_parser(name, help=module.HELP, description=module.HELP)
+    parser = subparsers.add_parser(
+        name, help=module.HELP, description=module.HELP, formatter_class=TableHelp
+    )
     module.add_arguments(parser)
     parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")

@@ -119,11 +119,14 @@ class Georeference(NamedTuple):
         Name of the unit of z where the file tells it outside the CRS.
     fault : str
         What is wrong with the file's CRS, where it has one that cannot be used.
+    notes : tuple of str
+        What is odd about it where it can be used.
     """
 
     wkt: str | None = None
     vertical_unit: str | None = None
     fault: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

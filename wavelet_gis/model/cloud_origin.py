@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
-from wavelet_core.mesh.triangulation import delaunay_faces, merge_duplicates
+from wavelet_core.mesh.gaps import PointGaps, faces_within, gaps_of
+from wavelet_core.mesh.triangulation import delaunay_faces
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.cloud_aside import Aside, MergedHeights, merged_points
 from wavelet_gis.model.exact_restore import (
     ExactColumn,
     checksum,
@@ -23,8 +25,15 @@ from wavelet_gis.model.exact_restore import (
     nearest_of_dtype,
     number_dtype,
 )
+from wavelet_gis.notes import warn
 
 __all__ = ["CloudOrigin", "cloud_mesh"]
+
+#: Gaps that take more than this share of a cloud's area are told of.
+TOLD_GAPS = 0.05
+
+_NO_SHIFTS = np.empty((0, 2), np.int64)
+_NOTHING_ASIDE = Aside(np.empty(0, np.int64), ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +60,16 @@ class CloudOrigin:
         altered (filtered).
     checksum : str
         SHA-256 of the original columns.
+    aside : Aside
+        Points that are no part of the surface.
+    duplicates : str
+        The rule by which points that share x and y are merged.
+    shifts : (n_shifted, 2) int64
+        Vertices whose height is the mean of several points, and what the stored Z of their own
+        point is above it.
+    spacing : float or None
+        Side of the square that one point has to itself, in the working frame; None in a pyramid
+        of before this was stored.
     """
 
     cloud: PointCloud
@@ -61,6 +80,10 @@ class CloudOrigin:
     dropped_attributes: tuple[NDArray[Any], ...]
     corrections: tuple[ExactColumn, ...] | None
     checksum: str
+    aside: Aside = _NOTHING_ASIDE
+    duplicates: str = "lowest"
+    shifts: NDArray[np.int64] = field(default_factory=_NO_SHIFTS.copy)
+    spacing: float | None = None
 
     kind = "points"
     noun = "point cloud"
@@ -72,6 +95,8 @@ class CloudOrigin:
         cloud: PointCloud,
         kept: NDArray[np.int64],
         representative: NDArray[np.int64],
+        z_of_vertices: NDArray[np.int64] | None = None,
+        duplicates: str = "lowest",
     ) -> CloudOrigin:
         """Return the origin of a cloud, before there is a pyramid (and so without corrections).
 
@@ -80,34 +105,48 @@ class CloudOrigin:
         cloud : PointCloud
             All points.
         kept, representative
-            As `wavelet_core.mesh.triangulation.merge_duplicates` returns them.
+            Of the points that are part of the surface, as
+            `wavelet_core.mesh.triangulation.merge_duplicates` returns them.
+        z_of_vertices : (n_kept,) int64, optional
+            Stored Z of the vertices, where it is not that of the points kept.
+        duplicates : str
+            The rule by which points were merged.
         """
-        is_dropped = np.ones(cloud.n_points, dtype=bool)
+        aside = Aside.of_cloud(cloud)
+        used = np.delete(np.arange(cloud.n_points), aside.rows)
+        is_dropped = np.ones(len(used), dtype=bool)
         is_dropped[kept] = False
-        dropped = np.flatnonzero(is_dropped)
-        vertex = representative[dropped]
-        differences = cloud.integers[dropped].astype(np.int64) - cloud.integers[kept[vertex]]
+        dropped, vertex, kept_rows = used[is_dropped], representative[is_dropped], used[kept]
+        of_vertices = cloud.integers[kept_rows].astype(np.int64)
+        shift = np.zeros(len(kept), np.int64)
+        if z_of_vertices is not None:
+            shift = of_vertices[:, 2] - z_of_vertices
+            of_vertices[:, 2] = z_of_vertices
+        shifted = np.flatnonzero(shift)
         return cls(
             cloud=_emptied(cloud),
             n_points=cloud.n_points,
             dropped=dropped,
             representative=vertex,
-            differences=differences,
+            differences=cloud.integers[dropped].astype(np.int64) - of_vertices[vertex],
             dropped_attributes=tuple(a.values[dropped] for a in cloud.attributes),
             corrections=None,
             checksum=checksum(cloud.columns()),
+            aside=aside,
+            duplicates=duplicates,
+            shifts=np.column_stack([shifted, shift[shifted]]).astype(np.int64),
         )
 
     def with_corrections(
         self, cloud: PointCloud, mesh: TriangleMesh, frame: LocalFrame
     ) -> CloudOrigin:
         """Return the origin that gives `cloud` back exactly from the synthesised `mesh`."""
-        kept = self._kept()
+        kept = self.vertex_rows()
+        originals = [column[kept] for column in cloud.columns()]
+        originals[2][self.shifts[:, 0]] -= self.shifts[:, 1].astype(np.int32)
         columns = tuple(
-            exact_column(original[kept], approximate)
-            for original, approximate in zip(
-                cloud.columns(), self._approximate(mesh, frame), strict=True
-            )
+            exact_column(original, approximate)
+            for original, approximate in zip(originals, self._approximate(mesh, frame), strict=True)
         )
         return replace(self, corrections=columns)
 
@@ -128,7 +167,48 @@ class CloudOrigin:
     @property
     def n_vertices(self) -> int:
         """Number of points that are vertices."""
-        return self.n_points - len(self.dropped)
+        return self.n_points - len(self.dropped) - len(self.aside.rows)
+
+    def vertex_rows(self) -> NDArray[np.int64]:
+        """Return the row in the file of the point that each vertex is."""
+        is_vertex = np.ones(self.n_points, dtype=bool)
+        is_vertex[self.dropped] = False
+        is_vertex[self.aside.rows] = False
+        return np.flatnonzero(is_vertex)
+
+    def merged_heights(self) -> MergedHeights:
+        """Return how far merged points are from the vertices that stand for them."""
+        apart = np.concatenate([self.differences[:, 2], self.shifts[:, 1]]).astype(np.float64)
+        apart *= abs(float(self.cloud.scales[2]))
+        return MergedHeights(
+            rule=self.duplicates,
+            n_points=len(self.dropped),
+            largest=float(np.abs(apart).max(initial=0.0)),
+            rms=float(np.sqrt(np.mean(apart**2))) if len(apart) else 0.0,
+        )
+
+    def points_for_errors(self, mesh: TriangleMesh, frame: LocalFrame) -> NDArray[np.float64]:
+        """Return every input point of the surface in the working frame, merged ones too.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            The finest one, whose vertices are the points that stand for others.
+        frame : LocalFrame
+            The working frame.
+
+        Returns
+        -------
+        (n, 3) float64
+            The points of the vertices first, in their order, then the merged ones. An error "at
+            all input points" is one at these.
+        """
+        unit = float(self.cloud.scales[2]) * frame.z_scale
+        of_vertices = mesh.vertices.copy()
+        merged = mesh.vertices[self.representative]
+        of_vertices[self.shifts[:, 0], 2] += self.shifts[:, 1] * unit
+        merged[:, 2] += self.differences[:, 2] * unit
+        return np.concatenate([of_vertices, merged])
 
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> PointCloud:
         """Return the points of the finest mesh of a pyramid, in their first order.
@@ -147,7 +227,7 @@ class CloudOrigin:
                 f"attributes for {self.n_vertices} points with {len(self.cloud.attributes)}; "
                 "only the finest level can be turned back into the points."
             )
-        kept = self._kept()
+        kept = self.vertex_rows()
         columns = [
             self._full_column(k, approximate, kept)
             for k, approximate in enumerate(self._approximate(mesh, frame))
@@ -156,7 +236,12 @@ class CloudOrigin:
             replace(attribute, values=column)
             for attribute, column in zip(self.cloud.attributes, columns[3:], strict=True)
         )
-        cloud = replace(self.cloud, integers=np.column_stack(columns[:3]), attributes=attributes)
+        cloud = replace(
+            self.cloud,
+            integers=np.column_stack(columns[:3]),
+            attributes=attributes,
+            is_altered=not self.is_exact,
+        )
         if self.is_exact and checksum(cloud.columns()) != self.checksum:
             raise PyramidError(
                 "the reconstruction is not exactly the original (its checksum differs); "
@@ -175,18 +260,17 @@ class CloudOrigin:
             of_vertices = self.corrections[k].restore(approximate)
         column = np.empty(self.n_points, dtype=dtype)
         column[kept] = of_vertices
-        if k < 3:
-            moved = of_vertices[self.representative].astype(np.int64) + self.differences[:, k]
-            limits = np.iinfo(dtype)
-            column[self.dropped] = np.clip(moved, limits.min, limits.max).astype(dtype)
-        else:
+        if len(self.aside.rows):
+            column[self.aside.rows] = self.aside.columns[k]
+        if k >= 3:
             column[self.dropped] = self.dropped_attributes[k - 3]
+            return column
+        vertices = of_vertices.astype(np.int64)
+        column[self.dropped] = _int32(vertices[self.representative] + self.differences[:, k])
+        if k == 2:
+            shifted, shift = self.shifts.T
+            column[kept[shifted]] = _int32(vertices[shifted] + shift)
         return column
-
-    def _kept(self) -> NDArray[np.int64]:
-        is_kept = np.ones(self.n_points, dtype=bool)
-        is_kept[self.dropped] = False
-        return np.flatnonzero(is_kept)
 
     def _approximate(self, mesh: TriangleMesh, frame: LocalFrame) -> Iterator[NDArray[np.float64]]:
         """Yield the columns of the mesh in the units that the file stores."""
@@ -221,6 +305,9 @@ class CloudOrigin:
             "attributes": described,
             "carried": list(cloud.carried),
             "checksum": self.checksum,
+            "duplicates": self.duplicates,
+            "spacing": self.spacing,
+            "evlrs_at": cloud.evlrs_at,
         }
         arrays: dict[str, NDArray[Any]] = {
             "source/dropped": self.dropped,
@@ -228,7 +315,10 @@ class CloudOrigin:
             "source/differences": self.differences,
             "source/header": cloud.header,
             "source/evlrs": cloud.evlrs,
+            **self.aside.to_arrays(),
         }
+        if len(self.shifts):
+            arrays["source/shifts"] = self.shifts
         for k, values in enumerate(self.dropped_attributes):
             arrays[f"source/dropped_attribute_{k}"] = values
         for k, values in enumerate(cloud.carried.values()):
@@ -277,6 +367,7 @@ class CloudOrigin:
             evlrs=arrays["source/evlrs"],
             n_in_file=stored.integer("n_in_file"),
             classes=None if stored["classes"] is None else tuple(stored.integers("classes")),
+            evlrs_at=None if fields.get("evlrs_at") is None else stored.integer("evlrs_at"),
         )
         corrections = None
         if "ledger" in stored:
@@ -295,6 +386,10 @@ class CloudOrigin:
             ),
             corrections=corrections,
             checksum=stored.text("checksum", 200),
+            aside=Aside.from_arrays(arrays, attributes, n_points),
+            duplicates=stored.text("duplicates", 20) if "duplicates" in stored else "lowest",
+            shifts=arrays.get("source/shifts", _NO_SHIFTS),
+            spacing=None if fields.get("spacing") is None else stored.number("spacing"),
         )
         origin._check()
         return origin
@@ -302,7 +397,12 @@ class CloudOrigin:
     def _check(self) -> None:
         cloud, n_dropped = self.cloud, len(self.dropped)
         n_columns = 3 + len(cloud.attributes)
-        _require(self.n_points >= n_dropped, "more points dropped than there are")
+        _require(self.n_vertices >= 0, "more points dropped than there are")
+        _require(self.shifts.ndim == 2 and self.shifts.shape[1] == 2, "shifts")
+        _require(self.shifts.dtype == np.int64, "shifts")
+        shifted = self.shifts[:, 0]
+        _require(bool(((shifted >= 0) & (shifted < self.n_vertices)).all()), "shifts")
+        _require(not np.isin(self.aside.rows, self.dropped).any(), "a point dropped twice")
         for numbers in (cloud.scales, cloud.offsets):
             _require(numbers.shape == (3,) and bool(np.isfinite(numbers).all()), "scales")
         _require(bool((cloud.scales != 0).all()), "a scale of zero")
@@ -334,7 +434,15 @@ class CloudOrigin:
             )
 
 
-def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, CloudOrigin]:
+def cloud_mesh(
+    cloud: PointCloud,
+    frame: LocalFrame,
+    *,
+    duplicates: str = "lowest",
+    max_edge: float | Literal["auto"] | None = None,
+    concave: bool = False,
+    name: str = "the cloud",
+) -> tuple[TriangleMesh, CloudOrigin]:
     """Return the Delaunay TIN of the points in the working frame, and how to come back from it.
 
     Parameters
@@ -343,26 +451,42 @@ def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, Clou
         In the file's coordinates.
     frame : LocalFrame
         From `wavelet_gis.crs.frame.working_frame`.
+    duplicates : {"lowest", "highest", "mean", "first"}
+        Which height points that share x and y have in common; all of them come back.
+    max_edge : float or "auto", optional
+        Leave faces with a longer edge out, as gaps of the cloud; in the working frame's unit,
+        which is that of x and y, or the metre for a geographic CRS. "auto" is
+        the length of `wavelet_core.mesh.gaps.gaps_of`. By default the convex hull is filled.
+    concave : bool
+        Leave out only what such edges open to the outside; with max_edge "auto" if none is given.
+    name : str
+        Of the cloud, for warnings.
 
     Raises
     ------
     InputFileError
         When a coordinate or an attribute is not finite.
     MeshError
-        When there are fewer than three points, or all lie on one line.
+        When there are fewer than three points, or all lie on one line, or no face is left.
+
+    Warns
+    -----
+    PointCloudWarning
+        How many points were merged and what that costs; gaps, and points without a face.
     """
-    vertices = frame.to_local(cloud.coordinates())
+    used = slice(None) if cloud.aside is None else ~cloud.aside
+    vertices = frame.to_local(cloud.coordinates()[used])
     if not np.isfinite(vertices).all():
         raise InputFileError(
             "the cloud has coordinates that are no finite numbers; check the scales and offsets "
             "in its header."
         )
-    merged = merge_duplicates(vertices)
-    origin = CloudOrigin.from_cloud(cloud, merged.kept, merged.representative)
+    merged, stored = merged_points(vertices, cloud.integers[used, 2], duplicates)
     kept = merged.kept
+    origin = CloudOrigin.from_cloud(cloud, kept, merged.representative, stored, duplicates)
     attributes = np.empty((len(kept), len(cloud.attributes)))
     for k, attribute in enumerate(cloud.attributes):
-        attributes[:, k] = attribute.lifted()[kept]
+        attributes[:, k] = attribute.lifted()[used][kept]
         if not np.isfinite(attributes[:, k]).all():
             raise InputFileError(
                 "attribute {attribute} has values that are no finite numbers; leave it out of {0}.",
@@ -371,13 +495,77 @@ def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, Clou
             )
     names = tuple(attribute.name for attribute in cloud.attributes)
     vertices = vertices[kept]
+    if duplicates == "mean":
+        vertices[:, 2] = frame.local_z(stored * cloud.scales[2] + cloud.offsets[2])
     faces = delaunay_faces(vertices[:, :2])
+    gaps = gaps_of(vertices[:, :2], faces)
+    origin = replace(origin, spacing=gaps.spacing)
+    faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
+    _tell_of_merging(name, origin)
     return TriangleMesh(vertices, faces, attributes, names), origin
+
+
+def _without_gaps(
+    name: str,
+    plan: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    gaps: PointGaps,
+    max_edge: float | Literal["auto"] | None,
+    concave: bool,
+) -> NDArray[np.int64]:
+    if max_edge is None and not concave:
+        if gaps.share > TOLD_GAPS:
+            _tell(
+                "gaps",
+                "{name}: gaps between the points take {share:.0%} of the area and are closed by "
+                "long triangles; {0} auto (here {length:.4g}) leaves them out",
+                "max_edge",
+                name=name,
+                share=gaps.share,
+                length=gaps.length,
+            )
+        return faces
+    length = gaps.length if max_edge is None or max_edge == "auto" else float(max_edge)
+    within = faces_within(plan, faces, length, from_outline=concave)
+    _tell(
+        "gaps_left_out",
+        "{name}: {n_gone} of {n_faces} triangles have an edge longer than {length:.4g} and are "
+        "left out; {n_alone} points are in no triangle then",
+        name=name,
+        n_gone=len(faces) - len(within),
+        n_faces=len(faces),
+        length=length,
+        n_alone=len(plan) - len(np.unique(within)),
+    )
+    return within
+
+
+def _tell_of_merging(name: str, origin: CloudOrigin) -> None:
+    merged = origin.merged_heights()
+    if merged.n_points:
+        _tell(
+            "merged_points",
+            "{name}: {n_points} points share x and y with others; the {rule} of each place stands "
+            "for them, up to {largest:.4g} off (root mean square {rms:.4g}) ({0})",
+            "duplicates",
+            name=name,
+            **merged._asdict(),
+        )
+
+
+def _tell(code: str, template: str, *options: str, **figures: Any) -> None:
+    warn(PointCloudWarning, code, template, *options, stacklevel=4, **figures)
+
+
+def _int32(values: NDArray[np.int64]) -> NDArray[np.int32]:
+    limits = np.iinfo(np.int32)
+    return np.clip(values, limits.min, limits.max).astype(np.int32)
 
 
 def _emptied(cloud: PointCloud) -> PointCloud:
     return replace(
         cloud,
+        aside=None,
         integers=np.empty((0, 3), np.int32),
         attributes=tuple(
             replace(a, values=np.empty(0, a.values.dtype.newbyteorder("<")))

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
 
 from wavelet_core import MeshError, Pyramid, TriangleMesh, WaveletError
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
@@ -56,6 +60,13 @@ class Terrain:
     frame: LocalFrame
     vertical_unit: str
     notes: tuple[Note, ...] = ()
+
+    def points_for_errors(self) -> NDArray[np.float64]:
+        """Return every input point of the surface in the working frame, merged ones too."""
+        points = self.origin.points
+        if points is None:
+            return self.mesh.vertices
+        return points.points_for_errors(self.mesh, self.frame)
 
     def with_notes(self, notes: list[Note]) -> Terrain:
         """Return the terrain with these notes instead of its own."""
@@ -131,6 +142,9 @@ def terrain_of_cloud(
     vertical_unit: str | None = None,
     *,
     fault: str = "",
+    duplicates: str = "lowest",
+    max_edge: float | Literal["auto"] | None = None,
+    concave: bool = False,
 ) -> Terrain:
     """Return the terrain of a point cloud that is in memory already.
 
@@ -146,19 +160,25 @@ def terrain_of_cloud(
         Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
     fault : str
         Why there is no CRS, for the warning.
+    duplicates, max_edge, concave
+        See `wavelet_gis.model.cloud_origin.cloud_mesh`.
     """
-    if cloud.n_points < 3:
+    n_points = cloud.n_used
+    if n_points < 3:
         raise InputFileError(
             "{name}: the cloud has {points}; a surface needs at least three (check the file, and "
             "{0} if given).",
             "classes",
             name=name,
-            points=f"{cloud.n_points} point{'s' * (cloud.n_points != 1)}",
+            points=f"{n_points} point{'s' * (n_points != 1)}",
         )
-    with collected() as notes:
-        frame, unit = frame_of_bounds(name, system, cloud_bounds(cloud), vertical_unit, fault)
+    _require_plan(name, cloud, system)
     try:
-        mesh, origin = cloud_mesh(cloud, frame)
+        with collected() as notes:
+            frame, unit = frame_of_bounds(name, system, cloud_bounds(cloud), vertical_unit, fault)
+            mesh, origin = cloud_mesh(
+                cloud, frame, duplicates=duplicates, max_edge=max_edge, concave=concave, name=name
+            )
     except (MeshError, InputFileError) as error:
         raise _about(name, error, InputFileError) from error
     return Terrain(name, mesh, cloud, origin, system, frame, unit, tuple(notes))
@@ -187,6 +207,20 @@ def terrain_of_mesh(
         Unit of z in the input.
     """
     return Terrain(name, mesh, mesh, MeshOrigin(), system, frame, vertical_unit)
+
+
+def _require_plan(name: str, cloud: PointCloud, system: CoordinateSystem) -> None:
+    """Refuse coordinates from the centre of the earth, where z is no height."""
+    wkt = (system.wkt or "").replace(" ", "")
+    if "GEOCCS[" not in wkt and "CS[Cartesian,3" not in wkt:
+        return
+    middle = cloud.coordinates()[: 1 << 20].mean(axis=0)
+    if 6.2e6 < float(np.linalg.norm(middle)) < 6.5e6:
+        raise CrsError(
+            f"{name}: {system.name} is geocentric, x, y and z are from the centre of the earth and "
+            "z is no height; reproject the points to a projected CRS first (for instance with "
+            "PDAL's filters.reprojection)."
+        )
 
 
 def frame_of_bounds(

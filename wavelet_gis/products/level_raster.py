@@ -9,6 +9,7 @@ from wavelet_core.errors import OptionError
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.rasterise import geometry_over, rasterise
+from wavelet_gis.products.vertex_raster import point_cell_size
 
 __all__ = ["surface_dem", "surface_difference"]
 
@@ -30,7 +31,8 @@ def surface_dem(
         In the working frame.
     cell_size : float, optional
         Of a grid over the mesh, in the input's unit of x and y. By default the grid of the raster
-        that the pyramid was made from; without one, the mean spacing of the mesh's vertices.
+        that the pyramid was made from, or the spacing of its points; without either, the mean
+        spacing of the mesh's vertices.
     attribute : str, optional
         What to evaluate instead of the elevation.
 
@@ -51,7 +53,7 @@ def surface_dem(
     if given is not None and not cell_size:
         geometry = given.geometry
     else:
-        geometry = _geometry(in_file, cell_size)
+        geometry = _geometry(in_file, cell_size or point_cell_size(geo))
     grid = rasterise(in_file, geometry, values)
     if given is None or given.dtype != np.float64:
         grid = grid.astype(np.float32)

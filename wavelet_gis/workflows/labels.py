@@ -51,9 +51,7 @@ def labels_from_las(geo: GeoPyramid, unlabelled: Sequence[int] = UNLABELLED) -> 
         )
     of_point = _carried_classes(source.cloud)
     if of_point is not None:
-        is_kept = np.ones(source.n_points, dtype=bool)
-        is_kept[source.dropped] = False
-        classes = of_point[is_kept].astype(np.int64)
+        classes = of_point[source.vertex_rows()].astype(np.int64)
     elif "classification" in geo.pyramid.attribute_names:
         mesh = geo.pyramid.synthesise()
         column = mesh.attribute_names.index("classification")
@@ -145,10 +143,8 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
     if source is None:
         raise OptionError("the pyramid was not made from a point cloud; write .gpkg or .tif.")
     cloud = cast(PointCloud, geo.restore())
-    is_kept = np.ones(source.n_points, dtype=bool)
-    is_kept[source.dropped] = False
     of_point = np.full(source.n_points, NOT_KNOWN, dtype=np.int64)
-    of_point[is_kept] = labels
+    of_point[source.vertex_rows()] = labels
     of_point[source.dropped] = labels[source.representative]
     changed = of_point >= 0
     if "raw_classification" in cloud.carried:

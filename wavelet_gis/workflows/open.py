@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -44,6 +44,11 @@ def open_terrain(
     carry: bool = True,
     crs: str | None = None,
     vertical_unit: str | None = None,
+    keep_noise: bool = False,
+    keep_withheld: bool = False,
+    duplicates: str = "lowest",
+    max_edge: float | Literal["auto"] | None = None,
+    concave: bool = False,
 ) -> Terrain:
     """Return the terrain in a raster or a LAS file.
 
@@ -53,12 +58,14 @@ def open_terrain(
         ``.las`` and ``.laz`` are read with laspy, all else with GDAL.
     band : int, optional
         Of a raster, from 1.
-    attributes, classes, carry
+    attributes, classes, carry, keep_noise, keep_withheld
         Of a point cloud; see `wavelet_gis.io.las.read_cloud`.
     crs : str, optional
         Instead of the CRS in the file.
     vertical_unit : str, optional
         Unit of z, instead of what the file tells.
+    duplicates, max_edge, concave
+        Of a point cloud; see `wavelet_gis.model.cloud_origin.cloud_mesh`.
 
     Raises
     ------
@@ -82,13 +89,37 @@ def open_terrain(
             raise InputFileError(
                 "{path}: a point cloud has no bands; leave {0} out.", "band", path=path
             )
-        cloud, place = read_cloud(path, attributes=attributes, classes=classes, carry=carry)
+        cloud, place = read_cloud(
+            path,
+            attributes=attributes,
+            classes=classes,
+            carry=carry,
+            keep_noise=keep_noise,
+            keep_withheld=keep_withheld,
+        )
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
-            os.fspath(path), cloud, system, vertical_unit or place.vertical_unit, fault=place.fault
+            os.fspath(path),
+            cloud,
+            system,
+            vertical_unit or place.vertical_unit,
+            fault=place.fault,
+            duplicates=duplicates,
+            max_edge=max_edge,
+            concave=concave,
         )
     from wavelet_gis.io.raster import read_dem
 
+    if keep_noise or keep_withheld or max_edge is not None or concave or duplicates != "lowest":
+        raise InputFileError(
+            "{path}: {0}, {1}, {2}, {3} and {4} are for point clouds; leave them out for a raster.",
+            "keep_noise",
+            "keep_withheld",
+            "duplicates",
+            "max_edge",
+            "concave",
+            path=path,
+        )
     if attributes or classes is not None:
         raise InputFileError(
             "{path}: {0} and {1} are for point clouds; leave them out for a raster.",

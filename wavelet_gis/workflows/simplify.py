@@ -145,7 +145,10 @@ def simplify(
     if is_fitted:
         mesh = fitted(mesh, terrain.mesh, cover=cover)
     clock.stage("errors")
-    errors = measured(mesh, terrain.mesh.vertices, terrain.frame.z_scale, cover)
+    # Of a cloud these are all points of the surface: those merged with a vertex count too.
+    points = terrain.points_for_errors()
+    known = cover if len(points) == terrain.mesh.n_vertices else None
+    errors = measured(mesh, points, terrain.frame.z_scale, known)
     noted = terrain.with_notes([*terrain.notes, *notes])
     return Simplified(
         geo=noted.uncorrected(pyramid),

@@ -136,8 +136,7 @@ def test_levels_are_spent_on_relief_however_large_the_flat_part_is():
         assert analyse(TriangleMesh(vertices, mesh.faces), levels=levels).n_levels == levels
     sizes = [pyramid.n_vertices(level) for level in range(pyramid.n_levels + 1)]
     without_error = [
-        rms(surface_errors(level, vertices)) < 1e-9 * np.ptp(vertices[:, 2])
-        for level in pyramid
+        rms(surface_errors(level, vertices)) < 1e-9 * np.ptp(vertices[:, 2]) for level in pyramid
     ]
     assert min(np.array(sizes)[without_error]) < 1.5 * n_relief  # flat parts went first
 

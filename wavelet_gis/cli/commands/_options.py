@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from wavelet_gis.cli.table_help import names_from
 from wavelet_gis.io.formats import (
     MESH_FORMATS,
     MESH_SUFFIXES,
@@ -61,6 +62,34 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_false",
         help="do not carry the dimensions that are not lifted; reconstruct writes them as zero",
     )
+    group.add_argument(
+        "--keep-noise",
+        action="store_true",
+        help="let points of the classes 7 and 18 (noise) be part of the surface; by default they "
+        "are carried only, and come back",
+    )
+    group.add_argument(
+        "--keep-withheld", action="store_true", help="the same for points with the withheld flag"
+    )
+    group.add_argument(
+        "--duplicates",
+        choices=("lowest", "highest", "mean", "first"),
+        default="lowest",
+        help="which height points that share x and y have in common (lowest)",
+    )
+    group.add_argument(
+        "--max-edge",
+        type=_max_edge,
+        metavar="LENGTH|auto",
+        help="leave triangles with a longer edge out, as gaps of the point cloud; in the unit of x "
+        "and y, or metres for a geographic CRS; auto: five times the spacing that 95 %% of the "
+        "points keep",
+    )
+    group.add_argument(
+        "--concave",
+        action="store_true",
+        help="leave out only what such edges open to the outside, so that gaps inside stay closed",
+    )
     group.add_argument("--layer", metavar="NAME", help="of a vector file of points or triangles")
     group.add_argument(
         "--z-field", metavar="NAME", help="field with the elevation where its points have no z"
@@ -88,6 +117,11 @@ def open_given(arguments: argparse.Namespace) -> Terrain:
         carry=arguments.carry,
         crs=arguments.crs,
         vertical_unit=arguments.vertical_unit,
+        keep_noise=arguments.keep_noise,
+        keep_withheld=arguments.keep_withheld,
+        duplicates=arguments.duplicates,
+        max_edge=arguments.max_edge,
+        concave=arguments.concave,
     )
 
 
@@ -100,11 +134,12 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         help="a design of the paper, prediction and update in one, such as GLMN or NNLSMN; with "
         "the paper's partition unless --partition names another",
     )
-    group.add_argument("--partition", metavar="NAME", help="which vertices are removed at a level")
-    group.add_argument("--prediction", metavar="NAME", help="how removed vertices are predicted")
-    group.add_argument(
-        "--update", metavar="NAME", help="how details are passed on to the vertices kept"
-    )
+    for table, flag, help_ in (
+        ("PARTITIONS", "--partition", "which vertices are removed at a level"),
+        ("PREDICTIONS", "--prediction", "how removed vertices are predicted"),
+        ("UPDATES", "--update", "how details are passed on to the vertices kept"),
+    ):
+        names_from(table, group.add_argument(flag, metavar="NAME", help=help_))
     group.add_argument(
         "--signal", metavar="z|xyz", help="lift elevation and attributes, or x and y too"
     )
@@ -207,6 +242,18 @@ def _classes(text: str) -> tuple[int, ...]:
     if not all(0 <= number <= 255 for number in classes):
         raise argparse.ArgumentTypeError("classes are 0 to 255")
     return classes
+
+
+def _max_edge(text: str) -> float | str:
+    if text == "auto":
+        return text
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is neither a length above 0 nor auto")
+    return value
 
 
 def _weights(text: str) -> tuple[float, ...]:
