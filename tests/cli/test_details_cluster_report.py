@@ -78,7 +78,7 @@ def test_details_give_a_band_for_every_level(run):
 
 def test_components_sum_with_the_base_to_the_dem(run, folder):
     from wavelet_core.features.spectrum import band_components
-    from wavelet_gis.io.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
     _, path, _ = run("details", "d.gpkg", "c.tif", "--what", "component")
     geo = read_pyramid(folder / "d.gpkg")
@@ -170,7 +170,7 @@ def test_what_does_not_go_together_is_refused(run, folder):
     assert "not made from a point cloud" in run("cluster", "d.gpkg", "a.tif", "--learn", "las")[2]
     assert "--level is for --what shape" in run("details", "d.gpkg", "a.tif", "--level", "2")[2]
     assert "must end in" in run("details", "d.gpkg", "a.csv")[2]
-    assert "no channel 'hag'" in run("details", "d.gpkg", "a.tif", "--channel", "hag")[2]
+    assert "no --channel 'hag'" in run("details", "d.gpkg", "a.tif", "--channel", "hag")[2]
     assert "there is no level 9" in run("report", "d.gpkg", "a.html", "--level", "9")[2]
     assert "must end in .html" in run("report", "d.gpkg", "a.pdf")[2]
 

@@ -39,8 +39,10 @@ def plane_for(system: CoordinateSystem, xy: FloatArray, to_crs: str = AUTO) -> C
     """
     if system.wkt is None or system.kind == "unknown":
         raise CrsError(
-            "the input has no CRS that could be changed for another; give it with --crs, or leave "
-            "--to-crs out."
+            "the input has no CRS that could be changed for another; give it with {0}, or leave "
+            "{1} out.",
+            "crs",
+            "to_crs",
         )
     if to_crs.lower() != AUTO:
         plane = coordinate_system(to_crs)
@@ -68,7 +70,9 @@ def projected(
     east, north = transformer.transform(x, y)
     if not (np.isfinite(east).all() and np.isfinite(north).all()):
         raise CrsError(
-            f"some points have no place in {plane.name}; give another CRS with --to-crs."
+            "some points have no place in {crs}; give another CRS with {0}.",
+            "to_crs",
+            crs=plane.name,
         )
     return np.asarray(east, dtype=np.float64), np.asarray(north, dtype=np.float64)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import re
 import stat
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from wavelet_core.errors import WaveletError
 from wavelet_gis.errors import CrsWarning, OutputFileError
 from wavelet_gis.io.companions import (
     is_ours,
@@ -18,13 +18,16 @@ from wavelet_gis.io.companions import (
     warn_of_strangers,
 )
 from wavelet_gis.io.names import MAX_DATABASE_NAME, file_of, is_utf8
-from wavelet_gis.io.read_back import Check, checks_of, room_at
+from wavelet_gis.io.read_back import Check, checks_of, require_sound_file
 from wavelet_gis.io.scratch import scratch_folder, sweep
+from wavelet_gis.notes import warn
 
 __all__ = ["check_output", "new_file"]
 
 #: What the file is called in the scratch folder: no library stumbles over it.
 _SCRATCH_STEM = "out"
+
+_EXISTS = "{path}: this file exists; give another name, or {0} to replace it."
 
 
 def check_output(
@@ -75,13 +78,14 @@ def check_output(
                 f"{target}: the output is the input itself; give it another name."
             )
     if exists and not overwrite:
-        raise OutputFileError(
-            f"{target}: this file exists; give another name or allow --overwrite."
-        )
+        raise OutputFileError(_EXISTS, "overwrite", path=target)
     if target.is_symlink() and not exists and not overwrite:
         raise OutputFileError(
-            f"{target}: this is a link to {os.readlink(target)}, which is not there; give another "
-            "name, or allow --overwrite to write what it points to."
+            "{path}: this is a link to {goal}, which is not there; give another name, or {0} to "
+            "write what it points to.",
+            "overwrite",
+            path=target,
+            goal=os.readlink(target),
         )
     place = _place(target)
     if not place.parent.is_dir():
@@ -177,12 +181,16 @@ def _named(scratch: Path, target: Path) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        error.args = tuple(
-            argument.replace(os.fspath(scratch), os.fspath(target))
-            if isinstance(argument, str)
-            else argument
-            for argument in error.args
-        )
+
+        def in_place(part: object) -> object:
+            if isinstance(part, str | os.PathLike):
+                return os.fspath(part).replace(os.fspath(scratch), os.fspath(target))
+            return part
+
+        error.args = tuple(map(in_place, error.args))
+        if isinstance(error, WaveletError):
+            error.template = str(in_place(error.template))
+            error.values = {name: in_place(value) for name, value in error.values.items()}
         if isinstance(error, OSError) and error.filename == os.fspath(scratch):
             error.filename = os.fspath(target)
         raise
@@ -210,15 +218,7 @@ def _verify(scratch: Path, target: Path, checks: list[Check]) -> None:
             f"{target}: the writer gave no way to check the file; please report this."
         )
     for check in checks:
-        try:
-            check(scratch)
-        except MemoryError:
-            raise
-        except Exception as error:
-            raise OutputFileError(
-                f"{target}: what was written does not read back as it should ({error}), so it was "
-                f"thrown away; {room_at(target.parent)}."
-            ) from error
+        require_sound_file(scratch, check, target)
 
 
 def _settle(scratch: Path, made: list[Path], place: Path, *, overwrite: bool) -> None:
@@ -232,9 +232,9 @@ def _settle(scratch: Path, made: list[Path], place: Path, *, overwrite: bool) ->
             _tell_of_prj(file, final, place)
             del finals[file]
         else:
-            raise _exists_already(final)
+            raise OutputFileError(_EXISTS, "overwrite", path=final)
     if os.path.lexists(place) and not overwrite:
-        raise _exists_already(place)
+        raise OutputFileError(_EXISTS, "overwrite", path=place)
     lone_prj = place.with_suffix(".prj")
     if lone_prj not in finals.values() and place.exists() and is_ours(lone_prj, place):
         stale.append(lone_prj)
@@ -260,20 +260,19 @@ def _settle(scratch: Path, made: list[Path], place: Path, *, overwrite: bool) ->
     _sync_folder(place.parent)
 
 
-def _exists_already(path: Path) -> OutputFileError:
-    return OutputFileError(f"{path}: this file exists; give another name or allow --overwrite.")
-
-
 def _tell_of_prj(made: Path, final: Path, place: Path) -> None:
     text = made.read_text("utf-8", errors="replace")
     name = re.search(r'\["([^"]*)"', text)
     code = re.search(r'(?:AUTHORITY|ID)\["(\w+)",\s*"?(\w+)"?\]\]\s*$', text)
     crs = (name[1] if name else "") + (f" ({code[1]}:{code[2]})" if code else "")
-    warnings.warn(
-        f"{final.name} belongs to another file and is left as it is; the CRS of {place.name} is "
-        f"{crs}",
+    warn(
         CrsWarning,
+        "prj_of_another_file",
+        "{prj} belongs to another file and is left as it is; the CRS of {output} is {crs}",
         stacklevel=4,
+        prj=final.name,
+        output=place.name,
+        crs=crs,
     )
 
 

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import os
 import re
-import warnings
 from pathlib import Path
 
 from wavelet_gis.errors import OutputFileError, TerrainWarning
+from wavelet_gis.notes import warn
 
 __all__ = ["holders", "is_ours", "own_companions", "refuse_companions", "warn_of_strangers"]
 
@@ -68,8 +68,11 @@ def refuse_companions(target: Path, *, overwrite: bool) -> None:
     found = own_companions(target)
     if found and not overwrite:
         raise OutputFileError(
-            f"{found[0]}: this file would be taken for a part of {target.name}; give another name "
-            "or allow --overwrite, which removes it."
+            "{path}: this file would be taken for a part of {output}; give another name, or {0} "
+            "to remove it.",
+            "overwrite",
+            path=found[0],
+            output=target.name,
         )
     if target.suffix.lower() == ".gpkg" and target.exists():
         processes = holders([target, *found])
@@ -116,11 +119,14 @@ def warn_of_strangers(target: Path) -> None:
     found = [target.with_suffix(ending) for ending in endings]
     names = [path.name for path in found if path.exists()]
     if names:
-        warnings.warn(
-            f"{', '.join(names)} beside {target.name} is left as it was and may not describe the "
-            "new file; remove it if it was made for the old one",
+        warn(
             TerrainWarning,
+            "stranger_beside_output",
+            "{files} beside {output} is left as it was and may not describe the new file; remove "
+            "it if it was made for the old one",
             stacklevel=3,
+            files=", ".join(names),
+            output=target.name,
         )
 
 

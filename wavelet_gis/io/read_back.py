@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import IO, Any
 
+from wavelet_core.errors import Cancelled
 from wavelet_gis.errors import OutputFileError
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "checks_of",
     "read_back",
     "recorded_stream",
+    "require_sound_file",
     "room_at",
     "write_bytes",
     "write_text",
@@ -58,9 +60,40 @@ def read_back(path: str | os.PathLike[str], check: Check) -> None:
     """
     waiting = _pending.get(os.fspath(path))
     if waiting is None:
-        check(path)
+        require_sound_file(path, check)
     elif check not in waiting:  # a database may have had several writers
         waiting.append(check)
+
+
+def require_sound_file(
+    path: str | os.PathLike[str], check: Check, target: str | os.PathLike[str] | None = None
+) -> None:
+    """Check a file that was written.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    check : callable
+        See `read_back`.
+    target : path, optional
+        The file that it is to become, for the message.
+
+    Raises
+    ------
+    OutputFileError
+        With what is wrong, and how much room there is.
+    """
+    try:
+        check(path)
+    except (MemoryError, Cancelled):
+        raise
+    except Exception as error:
+        name = target or path
+        raise OutputFileError(
+            f"{name}: what was written does not read back as it should ({error}), so it was "
+            f"thrown away; {room_at(os.path.dirname(os.path.abspath(name)))}."
+        ) from error
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:

@@ -8,7 +8,6 @@ import shutil
 import stat
 import tempfile
 import time
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Any
 
 from wavelet_gis._program import SCRATCH_PREFIX
 from wavelet_gis.errors import OutputFileError, TerrainWarning
+from wavelet_gis.notes import warn
 
 #: None on Windows, which does not remove what is open.
 _fcntl: Any = importlib.import_module("fcntl") if os.name == "posix" else None
@@ -71,11 +71,13 @@ def sweep(folder: Path) -> None:
             if held is not None:
                 os.close(held)
     if swept:
-        warnings.warn(
-            f"{folder}: the scratch files of {swept} earlier run{'s' * (swept != 1)} that had been "
-            "killed were removed",
+        warn(
             TerrainWarning,
+            "scratch_files_removed",
+            "{folder}: the scratch files of {runs} that had been killed were removed",
             stacklevel=3,
+            folder=os.fspath(folder),
+            runs=f"{swept} earlier run{'s' * (swept != 1)}",
         )
 
 

@@ -9,7 +9,7 @@ from functools import partial
 
 from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.errors import CrsWarning, OutputFileError
-from wavelet_gis.io.geopackage import LayerStyle, check_database, check_rows, now, write_styles
+from wavelet_gis.io.geopackage import LayerStyle, check_database, check_rows, write_styles
 from wavelet_gis.io.names import plain_folder
 from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.products.layers import Layer
@@ -41,23 +41,16 @@ def add_layers(
     OutputFileError
         When GDAL cannot write them.
     """
-    import pyogrio
-
     styles: list[LayerStyle] = []
     n_rows: dict[str, int] = {}
     n_features = 0
     crs = _crs_for_gdal(system)
-    # GDAL stamps the time of writing on each layer; see `wavelet_gis.io.geopackage.now`.
-    pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": now()})
-    try:
-        for layer in layers:
-            with plain_folder(path) as name:
-                _write_layer(name, layer, crs)
-            n_rows[layer.name] = len(layer.geometry)
-            styles.append((layer.name, layer.title, layer.style, layer.description))
-            n_features += len(layer.geometry)
-    finally:
-        pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": None})
+    for layer in layers:
+        with plain_folder(path) as name:
+            _write_layer(name, layer, crs)
+        n_rows[layer.name] = len(layer.geometry)
+        styles.append((layer.name, layer.title, layer.style, layer.description))
+        n_features += len(layer.geometry)
     write_styles(path, styles)
     read_back(path, check_database)
     read_back(path, partial(check_rows, n_rows={**n_rows, **_index_rows(n_rows)}))

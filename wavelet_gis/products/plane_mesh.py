@@ -7,6 +7,7 @@ from typing import NamedTuple
 from wavelet_core import TriangleMesh
 from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.notes import note
 
 __all__ = ["PlaneMesh", "plane_mesh"]
 
@@ -18,13 +19,10 @@ class PlaneMesh(NamedTuple):
         With x, y and z in one unit.
     system : CoordinateSystem
         Of x and y.
-    note : str
-        What is other than in the input; empty when nothing is.
     """
 
     mesh: TriangleMesh
     system: CoordinateSystem
-    note: str
 
 
 def plane_mesh(geo: GeoPyramid, mesh: TriangleMesh, to_crs: str | None = None) -> PlaneMesh:
@@ -47,15 +45,19 @@ def plane_mesh(geo: GeoPyramid, mesh: TriangleMesh, to_crs: str | None = None) -
 
     Notes
     -----
-    Viewers and CAD take x, y and z for one unit, so z of another unit is converted, too.
+    Viewers and CAD take x, y and z for one unit, so z of another unit is converted, too. What is
+    other than in the input is noted (`wavelet_gis.notes`).
     """
     system = geo.system
     is_geographic = system.kind == "geographic"
     if to_crs is None and not is_geographic:
-        note = ""
         if geo.frame.z_scale != 1.0:
-            note = f"z is converted from {geo.vertical_unit} to the unit of x and y"
-        return PlaneMesh(mesh, system, note)
+            note(
+                "mesh_file_unit",
+                "z of the mesh file is converted from {unit} to the unit of x and y",
+                unit=geo.vertical_unit.replace("_", " "),
+            )
+        return PlaneMesh(mesh, system)
     from wavelet_gis.crs.projection import plane_for, projected
 
     in_file = geo.file_mesh(mesh)
@@ -65,6 +67,11 @@ def plane_mesh(geo: GeoPyramid, mesh: TriangleMesh, to_crs: str | None = None) -
     vertices = mesh.vertices.copy()
     vertices[:, 0], vertices[:, 1], vertices[:, 2] = x, y, metres / plane.horizontal_unit
     placed = TriangleMesh(vertices, mesh.faces, mesh.attributes, mesh.attribute_names)
-    what = "of degrees" if is_geographic else f"of {system.name}"
-    note = f"x, y and z are in {plane.name}, instead {what} (--to-crs names another CRS)"
-    return PlaneMesh(placed, plane, note)
+    note(
+        "mesh_file_crs",
+        "x, y and z of the mesh file are in {crs}, instead of {was} ({0} names another CRS)",
+        "to_crs",
+        crs=plane.name,
+        was="degrees" if is_geographic else system.name,
+    )
+    return PlaneMesh(placed, plane)

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.dem import GridGeometry, RasterSource, grid_bounds
+from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.lone_vertices import fill_lone_cells
 from wavelet_gis.products.rasterise import geometry_over, rasterise
 
-__all__ = ["Bands", "grid_of", "label_band", "value_bands"]
+__all__ = ["Bands", "grid_of", "label_band", "point_cell_size", "value_bands"]
 
 #: Stored in cells without a label.
 NO_LABEL = 255
@@ -57,15 +57,15 @@ def grid_of(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None = None)
     mesh : TriangleMesh
         In the working frame.
     cell_size : float, optional
-        In the input's unit of x and y; by default, for points, their mean spacing.
+        In the input's unit of x and y; by default, for points, their spacing.
 
     Notes
     -----
     A raster's own cell size gives its own grid, to the cell; another one a grid over the raster's
     cells, edge to edge, so that cells of twice the size hold four of them.
     """
-    if isinstance(geo.source, RasterSource):
-        own = geo.source.geometry
+    if geo.origin.grid is not None:
+        own = geo.origin.grid.geometry
         if not cell_size or _has_cell_size(own, cell_size):
             return own
         return geometry_over(grid_bounds(own), cell_size)
@@ -73,8 +73,22 @@ def grid_of(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None = None)
     vertices = geo.frame.to_file(mesh.vertices)
     (x_min, y_min, _), (x_max, y_max, _) = vertices.min(axis=0), vertices.max(axis=0)
     if cell_size is None:
+        cell_size = point_cell_size(geo)
+    if cell_size is None:
         cell_size = float(np.sqrt((x_max - x_min) * (y_max - y_min) / max(len(vertices), 1)))
     return geometry_over((x_min, y_min, x_max, y_max), cell_size)
+
+
+def point_cell_size(geo: GeoPyramid) -> float | None:
+    """Return the spacing of the points that a pyramid was made from, in the input's unit.
+
+    None where it was made from something else. Gaps of the cloud do not count: a hull that they
+    take half of would give cells that each hold two points.
+    """
+    points = geo.origin.points
+    if points is None or points.spacing is None:
+        return None
+    return float(points.spacing / np.sqrt(geo.frame.x_scale * geo.frame.y_scale))
 
 
 def value_bands(
@@ -168,12 +182,10 @@ def _valid_cells(
     geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None
 ) -> NDArray[np.bool_] | None:
     """Return the cells of the input's own grid, if they are the vertices of the mesh one by one."""
-    source = geo.source
-    if not isinstance(source, RasterSource):
+    grid = geo.origin.grid
+    if grid is None or (cell_size and not _has_cell_size(grid.geometry, cell_size)):
         return None
-    if cell_size and not _has_cell_size(source.geometry, cell_size):
-        return None
-    return source.valid if mesh.n_vertices == source.n_vertices else None
+    return grid.valid if mesh.n_vertices == geo.origin.n_vertices else None
 
 
 def _has_cell_size(geometry: GridGeometry, cell_size: float) -> bool:

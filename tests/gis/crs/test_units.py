@@ -21,8 +21,9 @@ from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.crs.projection import plane_for, projected, scale_at
 from wavelet_gis.errors import CrsError, CrsWarning, OutputFileError, UnitWarning
 from wavelet_gis.io.meshes import MESH_SUFFIXES, write_mesh
+from wavelet_gis.notes import collected
 from wavelet_gis.products.plane_mesh import plane_mesh
-from wavelet_gis.workflows.open import open_terrain
+from wavelet_gis.workflows.open import open_input, open_terrain
 
 UTM = "+proj=utm +zone=32 +datum=WGS84"
 HORIZONTAL = {"m": 1.0, "ft": 0.3048, "us-ft": 1200 / 3937, "km": 1000.0}
@@ -130,7 +131,8 @@ def test_web_mercator_in_the_north_is_told(tmp_path):
     transform = rasterio.Affine(10.0, 0.0, 1e6, 0.0, -10.0, 11e6)
     source = write_tif(tmp_path / "a.tif", hills(), crs="EPSG:3857", transform=transform)
     with pytest.warns(CrsWarning, match=r"Mercator are 2\.89 times too long"):
-        open_terrain(source)
+        terrain = open_input(source)
+    assert [note.code for note in terrain.notes] == ["plane_not_true_to_scale"]
 
 
 @pytest.mark.parametrize(
@@ -158,9 +160,10 @@ def test_no_mesh_file_has_degrees(tmp_path, suffix):
     transform = rasterio.Affine(0.0003, 0.0, 7.0, 0.0, -0.0003, 44.0)
     source = write_tif(tmp_path / "a.tif", hills(), crs="EPSG:4326", transform=transform)
     geo = geo_of(source)
-    placed = plane_mesh(geo, geo.pyramid.synthesise())
+    with collected() as notes:
+        placed = plane_mesh(geo, geo.pyramid.synthesise())
     assert placed.system.name == "WGS 84 / UTM zone 32N"
-    assert "instead of degrees" in placed.note
+    assert "instead of degrees" in notes[0].text
     size = np.ptp(placed.mesh.vertices, axis=0)
     assert 1100 < size[0] < 1300  # 49 cells of 24 m
     assert 1250 < size[1] < 1400  # 39 cells of 33 m
@@ -172,7 +175,9 @@ def test_a_mesh_goes_to_the_crs_that_is_named(tmp_path):
     source = write_tif(tmp_path / "a.tif", hills())
     geo = geo_of(source)
     mesh = geo.pyramid.synthesise()
-    assert plane_mesh(geo, mesh).note == ""
+    with collected() as notes:
+        plane_mesh(geo, mesh)
+    assert notes == []
     placed = plane_mesh(geo, mesh, "EPSG:25833")
     assert "zone 33N" in placed.system.name
     assert not np.allclose(placed.mesh.vertices[:, 0], mesh.vertices[:, 0])

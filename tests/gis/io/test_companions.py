@@ -91,7 +91,7 @@ def test_companions_of_a_file_that_is_not_there_need_leave(tmp_path):
     (tmp_path / "p.gpkg-wal").write_bytes(b"\0" * 100)
     (tmp_path / "a.tif.aux.xml").write_text("<PAMDataset/>")
     for name in ("p.gpkg", "a.tif"):
-        with pytest.raises(OutputFileError, match="--overwrite"):
+        with pytest.raises(OutputFileError, match="overwrite to remove"):
             check_output(tmp_path / name)
         check_output(tmp_path / name, overwrite=True)
 

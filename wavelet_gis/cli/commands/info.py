@@ -7,7 +7,8 @@ from typing import Any
 
 from wavelet_gis.cli.console import Console
 
-HELP = "Tell what a pyramid file holds: source, CRS, parameters, and size and errors by level."
+ORDER = 20
+HELP = "Show what a pyramid file holds: source, CRS, parameters, size and errors by level."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_core.errors import PyramidError
-    from wavelet_gis.io.pyramid_file import read_summary
+    from wavelet_gis.io.pyramid.pyramid_file import read_summary
 
     summary = read_summary(arguments.file)
     try:
@@ -62,6 +63,7 @@ def _lines(summary: dict[str, Any]) -> list[str]:
         f"software    {summary['format']['software']}, format {summary['format']['version']}",
     ]
     lines += [f"change      {change}" for change in summary["history"]]
+    lines += [f"note        {note['text']}" for note in summary.get("notes", [])]
     return lines
 
 

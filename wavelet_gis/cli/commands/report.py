@@ -7,6 +7,7 @@ import argparse
 from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
 
+ORDER = 90
 HELP = "Write the quality report of a pyramid: one HTML page that needs no network."
 
 
@@ -28,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output, new_file
-    from wavelet_gis.io.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
     from wavelet_gis.io.read_back import write_text
     from wavelet_gis.report.page import report_page
 

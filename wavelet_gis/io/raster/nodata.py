@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["NO_ELEVATION", "doubtful_value", "impossible_values", "tag_without_clash"]
+__all__ = ["NO_ELEVATION", "doubtful_value", "impossible_values"]
 
 #: Floats from here on are no elevations in any unit; programs fill holes with them.
 NO_ELEVATION = 1e30
@@ -56,23 +56,3 @@ def doubtful_value(values: NDArray[Any]) -> tuple[float, int, float] | None:
         if gap > max(spread, 1.0) and gap > 50.0:
             return float(end), len(values) - len(rest), float(nearest)
     return None
-
-
-def tag_without_clash(
-    values: NDArray[np.floating[Any]], covered: NDArray[np.bool_], wished: float | int | None
-) -> float:
-    """Return the nodata value for a raster of floats: the wished one, or NaN where it is data.
-
-    Parameters
-    ----------
-    values : ndarray of float
-        The raster.
-    covered : ndarray of bool
-        Its cells with data.
-    wished : float, int or None
-        What the input had.
-    """
-    if wished is None or abs(float(wished)) > float(np.finfo(values.dtype).max):
-        return float("nan")
-    is_clash = bool((values[covered] == values.dtype.type(wished)).any())
-    return float("nan") if is_clash else float(wished)

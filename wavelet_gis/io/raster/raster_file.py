@@ -19,12 +19,13 @@ from numpy.typing import NDArray
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.errors import InputFileError, OutputFileError, RasterWarning
 from wavelet_gis.io.names import file_of, gdal_path
-from wavelet_gis.io.raster_check import check_raster
+from wavelet_gis.io.raster.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
+from wavelet_gis.io.raster.nodata import doubtful_value, impossible_values
+from wavelet_gis.io.raster.raster_check import check_raster
+from wavelet_gis.io.raster.remote import NO_NETWORK, remote_reference
 from wavelet_gis.io.read_back import read_back, room_at
-from wavelet_gis.io.remote import NO_NETWORK, remote_reference
 from wavelet_gis.model.dem import Dem, GridGeometry, require_sound
-from wavelet_gis.model.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
-from wavelet_gis.model.nodata import doubtful_value, impossible_values
+from wavelet_gis.notes import warn
 from wavelet_gis.products.vertex_raster import Bands
 
 if TYPE_CHECKING:
@@ -94,11 +95,20 @@ def read_dem(
     remote = remote_reference(path)
     if remote is not None and offline:
         raise InputFileError(
-            f"{path}: this raster reads {remote} over the network, which --offline forbids; fetch "
-            "the data first and name the local file."
+            "{path}: this raster reads {remote} over the network, which {0} forbids; fetch the "
+            "data first and name the local file.",
+            "offline",
+            path=path,
+            remote=remote,
         )
     if remote is not None:
-        _warn(f"{path}: reads {remote} over the network (--offline forbids it)")
+        _warn(
+            "raster_over_network",
+            "{path}: reads {remote} over the network ({0} forbids it)",
+            "offline",
+            path=os.fspath(path),
+            remote=remote,
+        )
     try:
         # A raster without georeference is told of by our own warning, once.
         settings = NO_NETWORK if offline else {}
@@ -163,7 +173,7 @@ def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
     """
     import rasterio
 
-    with _complaints_about(path, "as a cloud-optimised GeoTIFF", "leave --cog out"):
+    with _complaints_about(path, "as a cloud-optimised GeoTIFF", "leave {0} out", "cog"):
         profile = _profile_to_write(dem, wkt, "COG")
         options = {"compress": "deflate", "predictor": "yes"}
         with rasterio.open(gdal_path(path), "w", **profile, **options) as dataset:
@@ -249,7 +259,9 @@ def _profile_to_write(dem: Dem, wkt: str | None, driver: str) -> dict[str, Any]:
 
 
 @contextmanager
-def _complaints_about(path: str | os.PathLike[str], what: str, remedy: str) -> Iterator[None]:
+def _complaints_about(
+    path: str | os.PathLike[str], what: str, remedy: str, *options: str
+) -> Iterator[None]:
     """Turn what GDAL and rasterio raise in the block into one error of ours."""
     from rasterio._err import CPLE_BaseError
     from rasterio.errors import NotGeoreferencedWarning, RasterioError
@@ -263,11 +275,17 @@ def _complaints_about(path: str | os.PathLike[str], what: str, remedy: str) -> I
     # rasterio raises SystemError where GDAL fails without saying why.
     except (RasterioError, CPLE_BaseError, ValueError, SystemError) as error:
         cause = error.__cause__ or error
-        if isinstance(error, ValueError) or "support" in str(cause):
-            how = remedy
-        else:
-            how = f"{room_at(Path(path).parent)}, or {remedy}"
-        raise OutputFileError(f"{path}: GDAL cannot write this {what} ({cause}); {how}.") from error
+        room = ""
+        if not (isinstance(error, ValueError) or "support" in str(cause)):
+            room = f"{room_at(Path(path).parent)}, or "
+        raise OutputFileError(
+            "{path}: GDAL cannot write this {what} ({cause}); {room}" + remedy + ".",
+            *options,
+            path=path,
+            what=what,
+            cause=cause,
+            room=room,
+        ) from error
 
 
 @contextmanager
@@ -313,8 +331,10 @@ def _read_band(
         )
     if band is None and dataset.count > 1:
         raise InputFileError(
-            f"{path}: the raster has {dataset.count} bands; choose the one with the elevations "
-            "with --band."
+            "{path}: the raster has {n_bands} bands; choose the one with the elevations by {0}.",
+            "band",
+            path=path,
+            n_bands=dataset.count,
         )
     index = 1 if band is None else band
     if not 1 <= index <= dataset.count:
@@ -370,9 +390,14 @@ def _valid_cells(
         if holes.any():
             found = sorted({float(value) for value in np.unique(values[holes])[:3]})
             _warn(
-                f"{path}: {np.count_nonzero(holes):,} cells hold "
-                f"{', '.join(f'{value:.8g}' for value in found)}, which is no elevation; they are "
-                f"taken as nodata (--nodata names another value, or {NO_TAG})"
+                "impossible_elevations",
+                "{path}: {n_cells:,} cells hold {values}, which is no elevation; they are taken "
+                "as nodata ({0} names another value, or {none})",
+                "nodata",
+                path=os.fspath(path),
+                n_cells=int(np.count_nonzero(holes)),
+                values=", ".join(f"{value:.8g}" for value in found),
+                none=NO_TAG,
             )
             valid &= ~holes
     elif nodata != NO_TAG:
@@ -392,13 +417,19 @@ def _tell_of_doubts(dem: Dem, path: str | os.PathLike[str]) -> None:
     if doubt is not None:
         value, count, nearest = doubt
         _warn(
-            f"{path}: {count:,} cells hold {value:.8g} and the next value is {nearest:.8g}; they "
-            f"are taken as elevations (--nodata {value:.8g} makes them holes)"
+            "doubtful_elevations",
+            "{path}: {n_cells:,} cells hold {value:.8g} and the next value is {nearest:.8g}; they "
+            "are taken as elevations ({0} {value:.8g} makes them holes)",
+            "nodata",
+            path=os.fspath(path),
+            n_cells=count,
+            value=value,
+            nearest=nearest,
         )
 
 
-def _warn(message: str) -> None:
-    warnings.warn(message, RasterWarning, stacklevel=4)
+def _warn(code: str, template: str, *options: str, **figures: Any) -> None:
+    warn(RasterWarning, code, template, *options, stacklevel=4, **figures)
 
 
 def _nodata(dataset: DatasetReader, index: int) -> float | int | None:
