@@ -239,11 +239,12 @@ def test_parameters_are_plain_and_complete():
 # --- stop rules -------------------------------------------------------------------------------
 
 
-def test_levels_is_a_maximum_and_12_by_default():
+def test_levels_is_a_maximum_and_24_by_default_or_12_as_in_the_paper():
     mesh = synthetic.hills(40, 40)
     assert analyse(mesh, levels=3).n_levels == 3
-    assert analyse(mesh).n_levels == 12
+    assert analyse(mesh).n_levels == 24
     assert analyse(mesh, levels=500).n_levels < 500
+    assert analyse(synthetic.hills(40, 40), partition="quadric").n_levels == 12
 
 
 @pytest.mark.parametrize("signal", ["z", "xyz"])
