@@ -86,7 +86,7 @@ def test_a_plane_is_fitted_exactly():
     bent = mesh.vertices.copy()
     bent[:, 2] += np.arange(len(bent))
     result = fitted(TriangleMesh(bent, mesh.faces), plane)
-    np.testing.assert_allclose(surface_errors(result, plane.vertices), 0.0, atol=1e-5)
+    np.testing.assert_allclose(surface_errors(result, plane.vertices), 0.0, atol=1e-4)
 
 
 def test_vertices_without_a_face_stay_as_they_are():
