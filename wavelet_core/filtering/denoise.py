@@ -14,7 +14,7 @@ from ..lifting.analyse import EXPECTED_KEPT, analyse
 from ..lifting.linear_map import Transform
 from ..mesh.triangle_mesh import TriangleMesh
 from . import _weighted_sum
-from ._weighted_sum import WeightedSum
+from ._weighted_sum import ROUNDING, WeightedSum
 from .gains import channel_index
 from .noise import check_sigma, estimate_noise, noise_columns, noise_gains
 from .undecimated import UndecimatedBank
@@ -123,16 +123,17 @@ def denoise(
     deviations = [
         estimate_noise(mesh, columns[:, c]) if sigma is None else float(sigma) for c in chosen
     ]
-    changed = [c for c, deviation in zip(chosen, deviations, strict=True) if deviation > 0]
-    if changed and len(mesh.faces):
+    noisy = {
+        c: deviation
+        for c, deviation in zip(chosen, deviations, strict=True)
+        if deviation > ROUNDING * np.ptp(columns[:, c])
+        and np.ptp(columns[:, c]) > ROUNDING * np.abs(columns[:, c]).max()
+    }
+    if noisy and len(mesh.faces):
         decompositions = _Decompositions(mesh, n_pyramids, levels, prediction, locked, seed)
-        weighted = [
-            decompositions.weighted_sum(columns[:, c], deviation)
-            for c, deviation in zip(chosen, deviations, strict=True)
-            if deviation > 0
-        ]
+        weighted = [decompositions.weighted_sum(columns[:, c], noisy[c]) for c in noisy]
         _run(decompositions, weighted, progress)
-        for c, one in zip(changed, weighted, strict=True):
+        for c, one in zip(noisy, weighted, strict=True):
             columns[:, c] = one.result
     _report(progress, 1.0)
     return TriangleMesh._trusted(
