@@ -16,6 +16,7 @@ from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.crs.las import las_crs
 from wavelet_gis.errors import InputFileError, OutputFileError, PointCloudWarning
+from wavelet_gis.model.categories import channel_category
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 from wavelet_gis.model.ground import GROUND_CLASS, height_above_ground
 
@@ -150,13 +151,19 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
     if header.version.minor == 0:  # laspy knows no layout for 1.0, which 1.1 only adds to
         header._version = laspy.header.Version(1, 1)
     record = laspy.PackedPointRecord.zeros(cloud.n_points, header.point_format)
+    for attribute in cloud.attributes:
+        category = channel_category(attribute)
+        if category is not None:  # what is carried comes over it
+            dimension, value = category
+            record[dimension] = np.where(attribute.values != 0, value, record[dimension])
     for name, values in cloud.carried.items():
         if name in (record.array.dtype.names or ()) and name not in ("X", "Y", "Z"):
             record.array[name] = values
     for k, axis in enumerate("XYZ"):
         record.array[axis] = cloud.integers[:, k]
     for attribute in cloud.attributes:
-        _put(record, attribute)
+        if channel_category(attribute) is None:
+            _put(record, attribute)
     try:
         with open(path, "wb") as stream:
             writer = laspy.LasWriter(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from wavelet_core import Pyramid, TriangleMesh
 from wavelet_core.accuracy.level_errors import LevelErrors, level_errors
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.model.categories import is_category, with_own_values
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.cloud_origin import PointSource
 from wavelet_gis.model.dem import Dem, RasterSource
@@ -115,8 +117,33 @@ class GeoPyramid:
             return self.file_mesh(finest)
         return self.source.restore(finest, self.frame)
 
-    def file_mesh(self, mesh: TriangleMesh) -> TriangleMesh:
-        """Return a mesh of the pyramid in the coordinates of the input."""
+    @property
+    def categories(self) -> tuple[str, ...]:
+        """Names of the attributes that are categories; see `wavelet_gis.model.categories`."""
+        if isinstance(self.source, PointSource):
+            return tuple(a.name for a in self.source.cloud.attributes if is_category(a.dimension))
+        return tuple(name for name in self.pyramid.attribute_names if is_category(name))
+
+    def own_categories(self, mesh: TriangleMesh) -> TriangleMesh:
+        """Return a mesh of the pyramid with the categories of the input's nearest vertices."""
+        names = self.categories
+        return with_own_values(mesh, self.pyramid.synthesise(), names) if names else mesh
+
+    def file_mesh(
+        self, mesh: TriangleMesh, *, categories: Literal["nearest", "number"] = "nearest"
+    ) -> TriangleMesh:
+        """Return a mesh of the pyramid in the coordinates of the input.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            In the working frame.
+        categories : {"nearest", "number"}
+            Categories are those of the nearest input vertex, or, as in the paper, the numbers
+            that the filters made of them.
+        """
+        if categories == "nearest":
+            mesh = self.own_categories(mesh)
         if self.frame.is_identity:
             return mesh
         return TriangleMesh(

@@ -70,6 +70,7 @@ def tin_layers(
     mesh: TriangleMesh,
     vertex_ids: NDArray[np.int64],
     name: str = "tin",
+    categories: Literal["nearest", "number"] = "nearest",
 ) -> Iterator[Layer]:
     """Yield the layers of a TIN: ``<name>_tin`` and ``<name>_vertices``.
 
@@ -83,7 +84,11 @@ def tin_layers(
         Ids of the vertices in the input.
     name : str
         What the layers' names begin with.
+    categories : {"nearest", "number"}
+        See `GeoPyramid.file_mesh`.
     """
+    if categories == "nearest":
+        mesh = geo.own_categories(mesh)
     vertices = geo.frame.to_file(mesh.vertices)
     corners = vertices[mesh.faces]
     elevation = corners[:, :, 2].mean(axis=1)

@@ -7,8 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from wavelet_core import denoise
+from wavelet_core.errors import OptionError
 from wavelet_core.filtering.gains import band_gains, channel_index, check_level, relifted
 from wavelet_core.filtering.noise import channel_noise
+from wavelet_gis.model.categories import category_gains
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["change_between", "chosen_gains", "denoised_record", "scaled_record"]
@@ -54,6 +56,8 @@ def denoised_record(
     pyramid, sigmas = geo.pyramid, {}
     for name in channels:
         channel_index(pyramid.channels, name)
+        if name in geo.categories:
+            raise OptionError(f"{name} is a category and has no noise; name another channel.")
     for k, name in enumerate(channels):
         unit = geo.frame.z_scale if name == "z" else 1.0
         deviation = channel_noise(pyramid, name) if sigma is None else sigma * unit
@@ -125,11 +129,13 @@ def scaled_record(
     geo : GeoPyramid
         What is filtered.
     gains : dict of int to float
-        By level; others keep 1.
+        By level; others keep 1. Categories, such as classes, stay as they are.
     drops_coarse : bool
         Leave out the coarsest surface too, so that the details remain by themselves.
     """
-    pyramid = geo.pyramid.with_gains(gains, 0.0 if drops_coarse else 1.0)
+    channels, categories = geo.pyramid.channels, geo.categories
+    coarse = [0.0 if drops_coarse and name not in categories else 1.0 for name in channels]
+    pyramid = geo.pyramid.with_gains(category_gains(gains, channels, categories), coarse)
     named = ", ".join(f"{level}={gain:g}" for level, gain in sorted(gains.items()))
     line = f"gains {named or 'unchanged'}" + ", without the coarse surface" * drops_coarse
     return geo.with_pyramid(pyramid, line)

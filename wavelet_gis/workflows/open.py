@@ -8,6 +8,7 @@ from pathlib import Path
 
 from wavelet_gis.crs.frame import vertical_unit_name
 from wavelet_gis.errors import CrsError, InputFileError
+from wavelet_gis.model.categories import one_channel_per_category
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem
 
 __all__ = ["CLOUD_SUFFIXES", "open_terrain"]
@@ -23,6 +24,7 @@ def open_terrain(
     attributes: Sequence[str] = (),
     classes: Sequence[int] | None = None,
     carry: bool = True,
+    class_channels: bool = False,
     crs: str | None = None,
     vertical_unit: str | None = None,
 ) -> Terrain:
@@ -36,6 +38,8 @@ def open_terrain(
         Of a raster, from 1.
     attributes, classes, carry
         Of a point cloud; see `wavelet_gis.io.las.read_cloud`.
+    class_channels : bool
+        Lift classes, return numbers and other categories as one channel of 0 and 1 each.
     crs : str, optional
         Instead of the CRS in the file.
     vertical_unit : str, optional
@@ -62,6 +66,8 @@ def open_terrain(
         if band is not None:
             raise InputFileError(f"{path}: a point cloud has no bands; leave --band out.")
         cloud, place = read_cloud(path, attributes=attributes, classes=classes, carry=carry)
+        if class_channels:
+            cloud = one_channel_per_category(cloud)
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
             os.fspath(path), cloud, system, vertical_unit or place.vertical_unit, fault=place.fault

@@ -30,6 +30,11 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "return_number, rgb, any extra dimension, hag (height above the class-2 ground)",
     )
     group.add_argument(
+        "--class-channels",
+        action="store_true",
+        help="lift classes, return numbers and other categories as one channel of 0 and 1 each",
+    )
+    group.add_argument(
         "--classes", type=_classes, metavar="N,N", help="only points of these classes"
     )
     group.add_argument(
@@ -56,6 +61,7 @@ def open_input(arguments: argparse.Namespace) -> Terrain:
         attributes=arguments.attributes,
         classes=arguments.classes,
         carry=not arguments.drop_other_dimensions,
+        class_channels=arguments.class_channels,
         crs=arguments.crs,
         vertical_unit=arguments.vertical_unit,
     )

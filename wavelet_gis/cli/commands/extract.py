@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
@@ -42,6 +42,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=length,
         metavar="M",
         help="the least with no input vertex further off, vertically; in the unit of z",
+    )
+    parser.add_argument(
+        "--categories",
+        choices=("nearest", "number"),
+        default="nearest",
+        help="classes and other categories are those of the nearest input vertex (default), or, "
+        "as in the paper, the numbers that the filters made of them",
     )
     add_raster_arguments(parser)
     add_overwrite_argument(parser)
@@ -108,7 +115,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         if is_raster:
             figures = write_raster(scratch, geo, mesh, arguments)
         else:
-            write_tin(scratch, geo, mesh, level, vertex_ids)
+            write_tin(scratch, geo, mesh, level, vertex_ids, arguments.categories)
             figures = {}
     sizes = {
         "level": level,
@@ -150,6 +157,7 @@ def write_tin(
     mesh: TriangleMesh,
     level: int,
     vertex_ids: IntArray | None = None,
+    categories: Literal["nearest", "number"] = "nearest",
 ) -> None:
     """Write a mesh of the pyramid as GeoPackage layers or as a mesh file, by the suffix.
 
@@ -161,9 +169,10 @@ def write_tin(
 
     if Path(path).suffix.lower() == ".gpkg":
         ids = geo.pyramid.vertex_ids(level) if vertex_ids is None else vertex_ids
-        add_layers(path, tin_layers(geo, mesh, ids, f"level_{level:02d}"), geo.system)
+        layers = tin_layers(geo, mesh, ids, f"level_{level:02d}", categories)
+        add_layers(path, layers, geo.system)
     else:
-        write_mesh(path, geo.file_mesh(mesh), geo.system.wkt)
+        write_mesh(path, geo.file_mesh(mesh, categories=categories), geo.system.wkt)
 
 
 def write_raster(
@@ -178,7 +187,13 @@ def write_raster(
     from wavelet_gis.io.raster import write_cog, write_dem
     from wavelet_gis.products.level_raster import surface_dem
 
-    dem = surface_dem(geo, mesh, cell_size=arguments.cell_size, attribute=arguments.attribute)
+    dem = surface_dem(
+        geo,
+        mesh,
+        cell_size=arguments.cell_size,
+        attribute=arguments.attribute,
+        categories=getattr(arguments, "categories", "nearest"),
+    )
     (write_cog if arguments.cog else write_dem)(path, dem, geo.system.wkt)
     return {
         "n_rows": dem.geometry.shape[0],
