@@ -130,7 +130,7 @@ class ClusterDetails(PyramidAlgorithm):
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterBoolean("VALIDATE", self.tr("Tell the accuracy"), False),
+            QgsProcessingParameterBoolean("VALIDATE", self.tr("Tell the accuracy"), True),
             self.tr(
                 "Predict blocks of the map from the others, and tell how many of their labels come "
                 "out right. Takes several times as long."
@@ -248,38 +248,33 @@ class ClusterDetails(PyramidAlgorithm):
             None if count is None else self.parameterAsInt(parameters, "COUNT", context),
             self.parameterAsString(parameters, "METHOD", context),
             self.parameterAsInt(parameters, "SEED", context),
+            progress(feedback, 0.5, 0.8),
         )
         require_running(feedback)
-        feedback.setProgress(80)
         return clusters.labels, clusters.confidence, {}
 
     def _classes(self, parameters, context, geo, feedback):
-        import numpy as np
-
-        from wavelet_core.features.signature import plain_features, scale_features
-        from wavelet_gis.workflows.classify import learn_classes, spatial_folds, validate_classes
+        from wavelet_gis.workflows.learn import learn
 
         from ..qgis_io.crs_and_progress import progress, require_running
 
         given = self._given(parameters, context, geo, feedback)
-        feedback.setProgressText(self.tr("Gathering the spectrum of each vertex"))
-        scales = scale_features(geo.pyramid, progress(feedback, 0.05, 0.4))
-        features = scales.joined_to(plain_features(geo.pyramid))
-        seed = self.parameterAsInt(parameters, "SEED", context)
-        results = {}
-        if self.parameterAsBool(parameters, "VALIDATE", context):
-            feedback.setProgressText(self.tr("Predicting blocks of the map from the others"))
-            plan = geo.pyramid.synthesise().vertices[:, :2]
-            validation = validate_classes(features, given, spatial_folds(plan), seed)
-            results["ACCURACY"] = validation.accuracy
-            feedback.pushInfo(self.tr("Accuracy: {:.1f} %").format(100 * validation.accuracy))
-        require_running(feedback)
         feedback.setProgressText(self.tr("Learning the classes"))
-        classes = learn_classes(features, given, seed)
-        is_given = given >= 0
-        labels = np.where(is_given, given, classes.predicted)
-        feedback.setProgress(80)
-        return labels, np.where(is_given, 1.0, classes.confidence), results
+        learned = learn(
+            geo,
+            given,
+            is_las=self._teacher(parameters, context) == TEACHERS[2],
+            validate=self.parameterAsBool(parameters, "VALIDATE", context),
+            seed=self.parameterAsInt(parameters, "SEED", context),
+            progress=progress(feedback, 0.05, 0.8),
+        )
+        require_running(feedback)
+        for line in learned.notes:
+            feedback.pushInfo(line)
+        results = {}
+        if learned.validation is not None:
+            results["ACCURACY"] = learned.validation.accuracy
+        return learned.labels, learned.confidence, results
 
     def _given(self, parameters, context, geo, feedback):
         if self._teacher(parameters, context) == TEACHERS[2]:

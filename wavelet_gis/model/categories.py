@@ -137,7 +137,7 @@ def with_own_values(mesh: TriangleMesh, finest: TriangleMesh, names: Iterable[st
     columns = [mesh.attribute_names.index(name) for name in names]
     attributes = mesh.attributes.copy()
     nearest = nearest_vertices(finest, mesh.vertices[:, :2])
-    attributes[:, columns] = np.rint(finest.attributes[np.ix_(nearest, columns)])
+    attributes[:, columns] = np.rint(finest.attributes[nearest][:, columns])
     return TriangleMesh(mesh.vertices, mesh.faces, attributes, mesh.attribute_names)
 
 

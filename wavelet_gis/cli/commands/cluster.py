@@ -68,7 +68,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="count class N as M; may be given several times",
     )
     learning.add_argument(
-        "--validate", action="store_true", help="tell how well blocks of the map are predicted"
+        "--validate",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="tell how well blocks of the map are predicted from the others (default)",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of samples and starts")
     parser.add_argument(
@@ -134,40 +137,34 @@ def _clusters(
 def _classes(
     geo: GeoPyramid, arguments: argparse.Namespace, console: Console
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], dict[str, Any]]:
-    import numpy as np
-
-    from wavelet_core.features.signature import plain_features, scale_features
-    from wavelet_gis.workflows.classify import (
-        learn_classes,
-        merge_labels,
-        spatial_folds,
-        validate_classes,
-    )
+    from wavelet_gis.workflows.classify import merge_labels
     from wavelet_gis.workflows.labels import labels_from_las, labels_from_layer
+    from wavelet_gis.workflows.learn import learn
 
-    if arguments.learn == "las":
+    is_las = arguments.learn == "las"
+    if is_las:
         given = labels_from_las(geo, arguments.unlabelled)
     else:
         given = labels_from_layer(geo, arguments.learn, arguments.field)
-    given = merge_labels(given, arguments.merge)
-    with console.progress("spectrum") as progress:
-        features = scale_features(geo.pyramid, progress).joined_to(plain_features(geo.pyramid))
-    figures: dict[str, Any] = {"n_labelled": int(np.count_nonzero(given >= 0))}
-    if arguments.validate:
-        plan = geo.pyramid.synthesise().vertices[:, :2]
-        validation = validate_classes(features, given, spatial_folds(plan), arguments.seed)
-        figures["validation"] = validation.as_dict()
-        console.say(f"accuracy in blocks of the map left out: {validation.accuracy:.1%}")
-        console.table(
-            ("class", "F1", *(f"as {c}" for c in validation.classes)),
-            [
-                (c, validation.f1[c], *map(int, row))
-                for c, row in zip(validation.classes, validation.confusion, strict=True)
-            ],
+    with console.progress("learning") as progress:
+        learned = learn(
+            geo,
+            merge_labels(given, arguments.merge),
+            is_las=is_las,
+            validate=arguments.validate,
+            seed=arguments.seed,
+            progress=progress,
         )
-    classes = learn_classes(features, given, arguments.seed)
-    labels = np.where(given >= 0, given, classes.predicted)
-    return labels, np.where(given >= 0, 1.0, classes.confidence), figures
+    for line in learned.notes:
+        console.say(line)
+    figures: dict[str, Any] = {
+        "n_labelled": learned.n_labelled,
+        "left_out": list(learned.left_out),
+        "notes": list(learned.notes),
+    }
+    if learned.validation is not None:
+        figures["validation"] = learned.validation.as_dict()
+    return learned.labels, learned.confidence, figures
 
 
 def _write(
@@ -187,7 +184,8 @@ def _write(
         from wavelet_gis.io.las import write_cloud
         from wavelet_gis.workflows.labels import cloud_with_classes
 
-        write_cloud(path, cloud_with_classes(geo, labels))
+        own = arguments.unlabelled if arguments.learn == "las" else None
+        write_cloud(path, cloud_with_classes(geo, labels, own, arguments.merge))
     elif suffix in RASTER_SUFFIXES:
         mesh = geo.pyramid.synthesise()
         bands = label_band(geo, mesh, labels, name, arguments.cell_size)
