@@ -106,7 +106,7 @@ class FilterLevels(PyramidAlgorithm):
             ),
             self.tr(
                 "Pyramids in random order, each denoised, whose average leaves no traces of "
-                "triangles. 0 thresholds the details of this pyramid alone, which is quick."
+                "triangles. 0 thresholds the details of a single one, which is quick."
             ),
             advanced=True,
         )

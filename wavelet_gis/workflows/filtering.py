@@ -63,7 +63,8 @@ def denoised_record(
         deviation = channel_noise(pyramid, name) if sigma is None else sigma * unit
         sigmas[name] = deviation / unit
         if n_pyramids == 0:
-            pyramid = pyramid.denoised(deviation, channels=[name])
+            part = _part(progress, k, len(channels))
+            pyramid = pyramid.denoised(deviation, channels=[name], progress=part)
             continue
         mesh = denoise(
             pyramid.synthesise(),

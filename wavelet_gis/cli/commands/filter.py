@@ -68,7 +68,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=8,
         metavar="N",
         help="average over so many pyramids in random order (default 8); 0: threshold the "
-        "details of this pyramid alone, which is quick and leaves traces of its triangles",
+        "details of a single one, which is quick and leaves traces of its triangles",
     )
     noise.add_argument(
         "--channel",
