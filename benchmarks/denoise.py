@@ -1,6 +1,7 @@
 """Denoising against the usual filters, each at its best: the table, and a profile of LiDAR ground.
 
     python benchmarks/denoise.py [DATA] [--pyramids 32] [--pictures docs/images] [--only-ours]
+    python benchmarks/denoise.py [DATA] --kinds       # noise of several kinds, on smaller windows
 
 Normal noise of known standard deviation is added to DEMs, which then count as clean. The others
 are given that deviation and every one of their settings is chosen with the clean DEM at hand, on
@@ -132,6 +133,78 @@ def row(path, top, left, cell, sigma, n_pyramids, only_ours):
     return figures
 
 
+#: Side of the windows on which kinds of noise are compared.
+SMALL_WINDOW = 200
+
+
+def white(clean, sigma, cell, rng):
+    return clean + rng.normal(0, sigma, clean.shape), {"sigma": sigma}
+
+
+def correlated(clean, sigma, cell, rng):
+    noise = ndimage.gaussian_filter(rng.normal(size=clean.shape), 1.5, mode="wrap")
+    noisy = clean + sigma * noise / noise.std()
+    return noisy, {"sigma": sigma, "noise_range": 3.0 * cell}
+
+
+def correlated_estimated(clean, sigma, cell, rng):
+    return correlated(clean, sigma, cell, rng)[0], {"noise_range": "estimate"}
+
+
+def by_place(clean, sigma, cell, rng):
+    """Noise that grows with the slope, a tenth of it where it is flat."""
+    down, right = np.gradient(ndimage.gaussian_filter(clean, 3), cell)
+    steep = np.hypot(down, right)
+    local = sigma * (0.2 + 2.0 * steep / np.quantile(steep, 0.95))
+    return clean + local * rng.normal(size=clean.shape), {"local_noise": True}
+
+
+def with_outliers(clean, sigma, cell, rng):
+    """White noise, and 1 % of the cells off by 10 to 50 times that."""
+    noisy, _ = white(clean, sigma, cell, rng)
+    off = rng.random(clean.shape) < 0.01
+    signs = rng.choice([-1, 1], clean.shape)
+    noisy += off * signs * rng.uniform(10, 50, clean.shape) * sigma
+    return noisy, {"outliers": True}
+
+
+def rounded(clean, sigma, cell, rng):
+    """Values rounded to 3.5 sigma, whose noise is sigma, and nothing else."""
+    step = np.sqrt(12) * sigma
+    return np.round(clean / step) * step, {}
+
+
+KINDS = (white, correlated, correlated_estimated, by_place, with_outliers, rounded)
+
+
+def kinds(data, only_ours):
+    """Print a table of kinds of noise by filters on each DEM; ours gets what its row says."""
+    peers = {
+        "Gaussian": gaussian,
+        "median": median,
+        "non-local means": non_local_means,
+        "BayesShrink": bayes_shrink,
+    }
+    names = ["noisy", *([] if only_ours else peers), "ours"]
+    print("| DEM | noise |", " | ".join(names), "|")
+    print("| --- | --- |", " | ".join(["---:"] * len(names)), "|", flush=True)
+    for name, top, left, cell, sigma in DEMS:
+        with rasterio.open(data / "dems" / name) as file:
+            rows, columns = slice(top, top + SMALL_WINDOW), slice(left, left + SMALL_WINDOW)
+            clean = file.read(1).astype(float)[rows, columns]
+        for kind in KINDS:
+            noisy, options = kind(clean, sigma, cell, np.random.default_rng(0))
+            figures = [rmse(noisy, clean)]
+            if not only_ours:
+                figures += [best(method(noisy, sigma), clean)[0] for method in peers.values()]
+            result = denoise(mesh_of(noisy, cell), **options)
+            figures.append(rmse(result.vertices[:, 2], clean.ravel()))
+            least = min(figures)
+            cells = (f"**{f:.4g}**" if f == least else f"{f:.4g}" for f in figures)
+            kind_name = kind.__name__.replace("_", " ")
+            print(f"| `{name}` | {kind_name} |", " | ".join(cells), "|", flush=True)
+
+
 def lidar_profile(data, pictures):
     """Tell roughness, breaklines and movement of LiDAR points, and draw a profile with a house."""
     from wavelet_gis.workflows.open import open_terrain
@@ -200,8 +273,12 @@ def main():
     parser.add_argument("--pyramids", type=int, default=32)
     parser.add_argument("--pictures", type=Path)
     parser.add_argument("--only-ours", action="store_true", help="leave the others out")
+    parser.add_argument("--kinds", action="store_true", help="noise of several kinds instead")
     arguments = parser.parse_args()
     warnings.filterwarnings("ignore", category=UserWarning)  # of levels and wavelets tried
+    if arguments.kinds:
+        kinds(arguments.data, arguments.only_ours)
+        return
     lidar_profile(arguments.data, arguments.pictures)
     for name, top, left, cell, sigma in DEMS:
         figures = row(

@@ -12,6 +12,7 @@ from scipy.optimize import lsq_linear
 from .._validate import FloatArray
 from ..lifting.linear_map import LinearStep, Transform
 from .noise import local_energy
+from .noise_model import Noise
 from .undecimated import UndecimatedBank
 
 
@@ -79,9 +80,10 @@ class WeightedSum:
     Parameters
     ----------
     values : ndarray, shape (n_vertices,)
-    sigma : float
-        Standard deviation of the noise, above what rounding leaves of the values.
+    noise : Noise
+        Its standard deviation above what rounding leaves of the values.
     bank : UndecimatedBank
+        Measured with noise of this kind.
     n_pyramids, levels : int
         How many pyramids will be taken in, and the most levels that they have.
     seed : int
@@ -90,7 +92,7 @@ class WeightedSum:
     def __init__(
         self,
         values: FloatArray,
-        sigma: float,
+        noise: Noise,
         bank: UndecimatedBank,
         n_pyramids: int,
         levels: int,
@@ -100,7 +102,8 @@ class WeightedSum:
         n = len(values)
         self._values = values - values.mean()
         # Noise above the whole relief smooths it all; what is more would only cost digits.
-        self._sigma = min(sigma, float(np.ptp(values)))
+        self._sigma = min(noise.sigma, float(np.ptp(values)))
+        self.noise = noise
         self._generator = generator
         self._bank, self._share = bank, 1.0 / n_pyramids
         self._rows = (
@@ -120,11 +123,10 @@ class WeightedSum:
         """Whether the pyramids have any weight."""
         return bool(self._weights[: self._first_of_vertices].any())
 
-    def fit_vertices(self, tick: Callable[[], None]) -> None:
-        """Take in the details of all vertices, and their divergence; ``tick`` may cancel."""
+    def fit_vertices(self) -> None:
+        """Take in the details of all vertices, and their divergence."""
         shifted, probes = self._shifted(PROBED_BY_VERTICES)
         for where, damped in self._damped_by_vertices(shifted):
-            tick()
             self._take_in(where, damped, probes, 1.0)
 
     def fit(self, transform: Transform, gains: list[FloatArray]) -> None:
@@ -132,7 +134,7 @@ class WeightedSum:
         shifted, probes = self._shifted(PROBED_BY_PYRAMIDS)
         details = transform.analyse(shifted)[1]
         damped = [
-            _damped(step, detail, self._sigma * gain)
+            _damped(step, detail, self._sigma * gain, transform.tick)
             for step, detail, gain in zip(transform.steps, details, gains, strict=True)
         ]
         for first in range(0, len(damped), LEVELS_PER_BAND):  # counted from the finest
@@ -194,10 +196,9 @@ class WeightedSum:
                 changes[is_open] = found.x
         return changes / size
 
-    def add_vertices(self, tick: Callable[[], None]) -> None:
-        """Add the weighted details of all vertices to the result; ``tick`` may cancel."""
+    def add_vertices(self) -> None:
+        """Add the weighted details of all vertices to the result."""
         for where, damped in self._damped_by_vertices(self._values[:, None]):
-            tick()
             self.result += damped[:, 0] @ self._weights[where]
 
     def add(self, transform: Transform, gains: list[FloatArray]) -> None:
@@ -205,7 +206,7 @@ class WeightedSum:
         details = transform.analyse(self._values[:, None])[1]
         sums = {}
         for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
-            damped = _damped(step, details[level], self._sigma * gain)[:, 0]
+            damped = _damped(step, details[level], self._sigma * gain, transform.tick)[:, 0]
             sums[level] = damped @ self._weights[_block(len(gains) - 1 - level)][:, None]
         if sums:
             self.result += self._share * transform.synthesise_bands(sums)[:, 0]
@@ -214,7 +215,7 @@ class WeightedSum:
         """Return the column and itself moved a little along random probes, and the probes."""
         n = len(self._values)
         shape = (n, max(1, min(MOST_PROBES, n_wanted // n)))
-        probes = self._generator.choice([-1.0, 1.0], size=shape)
+        probes = self.noise.probes(self._generator, shape)
         moved = self._values[:, None] + PROBE_STEP * self._sigma * probes
         return np.column_stack([self._values, moved]), probes
 
@@ -238,9 +239,11 @@ class WeightedSum:
                 first = end
 
 
-def _damped(step: LinearStep, details: FloatArray, noise: FloatArray) -> FloatArray:
+def _damped(
+    step: LinearStep, details: FloatArray, noise: FloatArray, tick: Callable[[], None]
+) -> FloatArray:
     """Return ``(n_odd, k, n_elements)``: each column in parts by its local energy."""
-    energy = local_energy(step, (details / noise[:, None]) ** 2, PYRAMID_ROUNDS)
+    energy = local_energy(step, (details / noise[:, None]) ** 2, PYRAMID_ROUNDS, tick)
     return OF_PYRAMIDS.parts(details, energy)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ METHODS = ("bayes", "soft", "hard")
 #: Rounds of averaging over rings that a local energy is taken over.
 LOCAL_ROUNDS = 4
 #: The kind of pyramid whose details tell noise from terrain.
-PLAIN = {"partition": "random", "prediction": "plane"}
+PLAIN: dict[str, Any] = {"partition": "random", "prediction": "plane"}
 
 
 def denoised(
