@@ -6,11 +6,12 @@
 Normal noise of known standard deviation is added to DEMs, which then count as clean. The others
 are given that deviation and every one of their settings is chosen with the clean DEM at hand, on
 each DEM anew, to the advantage of all of them; ours is given the deviation, and nothing else.
-Needs scikit-image and PyWavelets.
+Needs scikit-image and PyWavelets; --kinds goes without the filters of theirs where they are not.
 """
 
 import argparse
 import warnings
+from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
 from time import process_time
@@ -18,7 +19,6 @@ from time import process_time
 import numpy as np
 import rasterio
 from scipy import ndimage
-from skimage.restoration import denoise_nl_means, denoise_wavelet
 
 from wavelet_core import TriangleMesh, analyse, denoise
 from wavelet_core.filtering.noise import estimate_noise
@@ -54,7 +54,30 @@ def median(noisy, sigma):
         yield size, ndimage.median_filter(noisy, size, mode="nearest")
 
 
+def median_and_gaussian(noisy, sigma):
+    for size, width in product((3, 5), np.geomspace(0.5, 4, 12)):
+        first = ndimage.median_filter(noisy, size, mode="nearest")
+        yield f"{size}, {width:.2f}", ndimage.gaussian_filter(first, width, mode="nearest")
+
+
+def bilateral(noisy, sigma):
+    for width, strength in product((1.0, 1.5, 2.5), (1.5, 2.5, 4.0, 8.0)):
+        reach = int(np.ceil(2 * width))
+        padded = np.pad(noisy, reach, mode="reflect")
+        total, weights = np.zeros_like(noisy), np.zeros_like(noisy)
+        for down, right in product(range(2 * reach + 1), repeat=2):
+            other = padded[down : down + noisy.shape[0], right : right + noisy.shape[1]]
+            far = ((down - reach) ** 2 + (right - reach) ** 2) / width**2
+            apart = ((other - noisy) / (strength * sigma)) ** 2
+            weight = np.exp(-0.5 * (far + apart))
+            total += weight * other
+            weights += weight
+        yield f"{width}, {strength} sigma", total / weights
+
+
 def non_local_means(noisy, sigma):
+    from skimage.restoration import denoise_nl_means
+
     for patch, reach, strength in product((5, 7, 9), (6, 11), (0.5, 0.7, 0.9)):
         yield (
             f"patch {patch}, reach {reach}, h {strength} sigma",
@@ -75,6 +98,8 @@ def bayes_shrink(noisy, sigma, shifts=(0,)):
     Terrain is no torus: a shift cuts its window from the DEM mirrored beyond its edges, since the
     seam of a cyclic one would lower BayesShrink's thresholds everywhere.
     """
+    from skimage.restoration import denoise_wavelet
+
     margin = max(shifts)
     low, span = noisy.min(), np.ptp(noisy)
     image = 0.25 + 0.5 * (noisy - low) / span  # denoise_wavelet clips to [0, 1]
@@ -182,9 +207,11 @@ def kinds(data, only_ours):
     peers = {
         "Gaussian": gaussian,
         "median": median,
-        "non-local means": non_local_means,
-        "BayesShrink": bayes_shrink,
+        "median, then Gaussian": median_and_gaussian,
+        "bilateral": bilateral,
     }
+    if find_spec("skimage") and find_spec("pywt"):
+        peers |= {"non-local means": non_local_means, "BayesShrink": bayes_shrink}
     names = ["noisy", *([] if only_ours else peers), "ours"]
     print("| DEM | noise |", " | ".join(names), "|")
     print("| --- | --- |", " | ".join(["---:"] * len(names)), "|", flush=True)

@@ -87,7 +87,7 @@ class FilterLevels(PyramidAlgorithm):
     def _add_noise_parameters(self):
         self.add(
             QgsProcessingParameterBoolean("DENOISE", self.tr("Take out noise"), False),
-            self.tr("White noise, such as that of a laser scanner."),
+            self.tr("Such as that of a laser scanner."),
         )
         self.add(
             QgsProcessingParameterNumber(
@@ -100,6 +100,39 @@ class FilterLevels(PyramidAlgorithm):
             ),
             self.tr("In the unit of elevation; empty to have it estimated from the finest level."),
         )
+        self.add(
+            QgsProcessingParameterNumber(
+                "NOISE_RANGE",
+                self.tr("Range of the noise"),
+                DOUBLE,
+                None,
+                optional=True,
+                minValue=0.0,
+            ),
+            self.tr(
+                "Distance at which the correlation of the noise has fallen to a third, in metres; "
+                "empty for noise that is white."
+            ),
+            advanced=True,
+        )
+        for name, description, text in (
+            (
+                "FIND_RANGE",
+                self.tr("Estimate the range of the noise"),
+                self.tr("From how details fall off over the scales."),
+            ),
+            (
+                "LOCAL_NOISE",
+                self.tr("Noise differs by place"),
+                self.tr("Measure the noise at each place, as on slopes seen by a laser scanner."),
+            ),
+            (
+                "OUTLIERS",
+                self.tr("Replace outliers"),
+                self.tr("Values that stand out of their ring are replaced before all else."),
+            ),
+        ):
+            self.add(QgsProcessingParameterBoolean(name, description, False), text, advanced=True)
         self.add(
             QgsProcessingParameterNumber(
                 "PYRAMIDS", self.tr("Number of pyramids averaged"), INTEGER, 8, minValue=0
@@ -222,6 +255,9 @@ class FilterLevels(PyramidAlgorithm):
                 self._number(parameters, "SIGMA_OF_NOISE", self.parameterAsDouble, context),
                 channels=self._channels(parameters, context),
                 n_pyramids=self.parameterAsInt(parameters, "PYRAMIDS", context),
+                noise_range=self._range(parameters, context),
+                local_noise=self.parameterAsBool(parameters, "LOCAL_NOISE", context),
+                outliers=self.parameterAsBool(parameters, "OUTLIERS", context),
                 progress=progress(feedback, 0.05, 0.7),
             )
             results["SIGMA"] = next(iter(sigmas.values()))
@@ -287,6 +323,11 @@ class FilterLevels(PyramidAlgorithm):
         if smallest is None and largest is None:
             return None
         return smallest or 0.0, float("inf") if largest is None else largest
+
+    def _range(self, parameters, context):
+        if self.parameterAsBool(parameters, "FIND_RANGE", context):
+            return "estimate"
+        return self._number(parameters, "NOISE_RANGE", self.parameterAsDouble, context) or 0.0
 
     def _channels(self, parameters, context):
         text = self.parameterAsString(parameters, "CHANNELS", context)

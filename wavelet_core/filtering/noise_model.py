@@ -19,19 +19,20 @@ from .undecimated import UndecimatedBank, rings
 LEAST_ALIKE = 0.5
 #: An outlier is so many standard deviations of the noise, plus so many times the relief of its
 #: ring, above the second highest of its neighbours or below the second lowest.
-OUTLIER_DEVIATIONS, OUTLIER_RELIEF = 5.0, 1.0
+OUTLIER_DEVIATIONS, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE = 5.0, 1.0, 4.0
 #: Looks for outliers: each sees those that others stood beside.
 OUTLIER_PASSES = 5
+#: Vertices of fewer neighbours, at corners, are none.
+LEAST_NEIGHBOURS = 4
 #: Rounds in which an outlier is filled from its neighbours.
 FILL_ROUNDS = 20
-#: Vertices of a block of the map whose median tells the noise there.
-VERTICES_OF_BLOCK = 100
-#: Relative deviation of the median of one absolute value; those of a block hang together.
-DEVIATION_OF_MEDIAN = 1.6
+#: Vertices of a block of the map that tell the noise there, the width of the blur over blocks,
+#: and what the blurred deviation of white noise varies by, times the root of that number.
+VERTICES_OF_BLOCK, BLUR_OF_BLOCKS, DEVIATION_OF_BLOCK = 25, 0.5, 0.9
 #: Correlation lengths that are tried, in mean distances of neighbours.
 TRIED_RANGES = (0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0)
 #: Scales by which they are told, and the share of the vertices, the flattest, that tell.
-N_TOLD, SHARE_TOLD = 3, 0.3
+N_TOLD, SHARE_TOLD = 3, 0.5
 
 RangeOption = float | Literal["estimate"]
 
@@ -179,11 +180,18 @@ def noise_of(
     if noise_range > 0:
         noise = replace(noise, reach=float(noise_range), plan=plan)
         if sigma is None:
-            told, _ = _told_deviations(bank, values)
-            gains = _deviations(bank, noise.columns(mesh.n_vertices, seed)[:, :4])
-            noise = replace(noise, sigma=_floored(float(np.min(told / gains)), quantum))
+            alike = noise.columns(mesh.n_vertices, seed)[:, 0]
+            ratios = _told_deviations(bank, values) / _told_deviations(bank, alike)
+            noise = replace(noise, sigma=_floored(float(np.median(ratios)), quantum))
     if local_noise:
-        noise = replace(noise, relative=_map_of_noise(bank, plan, values, noise, seed))
+        local = _map_of_noise(bank, plan, values, noise, seed)
+        if local is not None:
+            typical = float(np.median(local))
+            noise = replace(
+                noise,
+                sigma=_floored(typical, quantum) if sigma is None else noise.sigma,
+                relative=local / typical,
+            )
     return noise, values
 
 
@@ -223,7 +231,8 @@ def without_outliers(
     Notes
     -----
     An outlier is above the second highest of its neighbours, or below the second lowest, by more
-    than 5 sigma and the relief of the ring between those two. So a bank, a crest or a summit is
+    than 5 sigma and the relief of the ring between those two; at an outline, where all neighbours
+    may lie downhill, above the highest by four times the relief. So a bank, a crest or a summit is
     none, nor is one of two outliers side by side a reason to keep the other.
     """
     n = mesh.n_vertices
@@ -233,15 +242,20 @@ def without_outliers(
     keeps = row != column
     row, column = row[keeps], column[keeps]
     deviation = _floored(estimate_noise(mesh, values), quantum) if sigma is None else sigma
+    # At an outline all neighbours may lie downhill.
+    is_inside = np.bincount(row, minlength=n) == np.bincount(mesh.faces.ravel(), minlength=n)
+    relief_counts = np.where(is_inside, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE)
+    rank = np.where(is_inside, 2, 1)
     is_out = np.zeros(n, dtype=bool)
     for _ in range(OUTLIER_PASSES):
         good = ~is_out[column]
-        highest = _second_highest(row[good], values[column[good]], n)
-        lowest = -_second_highest(row[good], -values[column[good]], n)
-        known = np.isfinite(highest) & np.isfinite(lowest) & (highest >= lowest)
-        relief = np.where(known, highest - lowest, np.inf)
+        at = row[good], values[column[good]]
+        highest, lowest = _high(*at, rank, n), -_high(at[0], -at[1], rank, n)
+        known = np.isfinite(highest) & np.isfinite(lowest)
+        relief = np.where(known, np.maximum(highest - lowest, 0.0), np.inf)
         excess = np.maximum(values - highest, lowest - values)
-        new = known & ~is_out & (excess > OUTLIER_DEVIATIONS * deviation + OUTLIER_RELIEF * relief)
+        least = OUTLIER_DEVIATIONS * deviation + relief_counts * relief
+        new = known & ~is_out & (excess > least)
         if not new.any():
             break
         is_out |= new
@@ -276,14 +290,15 @@ def _floored(sigma: float, quantum: float) -> float:
     return max(sigma, quantum / np.sqrt(12.0))
 
 
-def _second_highest(row: IntArray, values: FloatArray, n: int) -> FloatArray:
-    """Return the second highest value of each row; minus infinity of rows of fewer than two."""
-    second = np.full(n, -np.inf)
+def _high(row: IntArray, values: FloatArray, rank: IntArray, n: int) -> FloatArray:
+    """Return the value of a rank, 1 the highest, of each row; minus infinity of too few."""
+    found = np.full(n, -np.inf)
     order = np.lexsort((values, row))
-    last = np.cumsum(np.bincount(row, minlength=n)) - 1
-    has_two = np.bincount(row, minlength=n) >= 2
-    second[has_two] = values[order][last[has_two] - 1]
-    return second
+    counts = np.bincount(row, minlength=n)
+    last = np.cumsum(counts)
+    has = counts >= LEAST_NEIGHBOURS
+    found[has] = values[order][(last - rank)[has]]
+    return found
 
 
 def _filled(row: IntArray, column: IntArray, values: FloatArray, is_out: np.ndarray) -> FloatArray:
@@ -302,48 +317,42 @@ def _filled(row: IntArray, column: IntArray, values: FloatArray, is_out: np.ndar
     return filled
 
 
-def _deviations(bank: UndecimatedBank, columns: FloatArray) -> FloatArray:
-    """Return the deviation of the details of the first scales, of columns of noise."""
-    found = []
-    for details in bank.details(columns):
-        found.append(float(np.std(details.sum(axis=2))))
-        if len(found) == N_TOLD:
-            break
-    return np.array(found)
+def _told_deviations(bank: UndecimatedBank, column: FloatArray) -> FloatArray:
+    """Return the robust deviation of details of each scale, where the next scale is flattest.
 
-
-def _told_deviations(bank: UndecimatedBank, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the robust deviation of details of each scale, where the next scale is flattest."""
-    details = [one.sum(axis=2)[:, 0] for one in bank.details((values - values.mean())[:, None])]
+    The flattest places are also those where the noise happens to be weak; the noise that this is
+    compared with goes the same way.
+    """
+    details = [one.sum(axis=2)[:, 0] for one in bank.details((column - column.mean())[:, None])]
     energy = bank.local_energy(details[-1] ** 2, 8)
     flat = energy <= np.quantile(energy, SHARE_TOLD)
     told = np.array([np.median(np.abs(one[flat])) / NORMAL_MAD for one in details[:N_TOLD]])
-    return np.maximum(told, 1e-300), energy
+    return np.maximum(told, 1e-300)
 
 
 def _told_range(bank: UndecimatedBank, plan: FloatArray, values: FloatArray, seed: int) -> float:
     """Return the correlation length whose details fall off over the scales as those found do."""
-    told, _ = _told_deviations(bank, values)
+    told = _told_deviations(bank, values)
     spacing = float(np.sqrt(np.ptp(plan, axis=0).prod() / max(len(plan), 1)))
     generator = np.random.default_rng(seed)
     misfits = []
     for tried in TRIED_RANGES:
         if tried == 0.0:
-            columns = generator.standard_normal((len(plan), 1))
+            column = generator.standard_normal(len(plan))
         else:
-            columns = correlated_noise(plan, tried * spacing, 1, generator)
-        misfits.append(float(np.var(np.log(told / _deviations(bank, columns)))))
+            column = correlated_noise(plan, tried * spacing, 1, generator)[:, 0]
+        misfits.append(float(np.var(np.log(told / _told_deviations(bank, column)))))
     return TRIED_RANGES[int(np.argmin(misfits))] * spacing
 
 
 def _map_of_noise(
     bank: UndecimatedBank, plan: FloatArray, values: FloatArray, noise: Noise, seed: int
 ) -> FloatArray | None:
-    """Return the deviation at each vertex over the median one; None where it is the same.
+    """Return the deviation of the noise at each vertex; None where it is the same everywhere.
 
     The finest details, smoothed out twice so that hills leave nothing in them, are compared by
-    their medians in blocks of the map. What the medians of so few would vary by alone is taken
-    off before the map is believed.
+    their root mean square in blocks of the map, what is above three times the median counting as
+    that. What so few would vary by alone is taken off before the map is believed.
     """
     both = np.column_stack([values - values.mean(), noise.columns(len(values), seed)[:, :4]])
     for _ in range(2):
@@ -356,23 +365,27 @@ def _map_of_noise(
     if shape.prod() < 4:
         return None
     cell = np.minimum((plan / side).astype(int), shape - 1)
-    medians, counts = _medians_of_blocks(cell[:, 0] * shape[1] + cell[:, 1], size, shape.prod())
+    block, n_blocks = cell[:, 0] * shape[1] + cell[:, 1], int(shape.prod())
+    medians, counts = _medians_of_blocks(block, size, n_blocks)
     is_told = (counts >= VERTICES_OF_BLOCK / 4) & (medians > 0)
     if is_told.sum() < 4:
         return None
-    logs = np.where(is_told, np.log(np.where(is_told, medians, 1.0)), 0.0).reshape(shape)
-    centre = float(np.median(logs[is_told.reshape(shape)]))
+    limit = 3.0 * medians[block] / NORMAL_MAD
+    squares = np.bincount(block, np.minimum(size, limit) ** 2, n_blocks) / np.maximum(counts, 1)
     weight = is_told.reshape(shape).astype(np.float64)
-    smooth = ndimage.gaussian_filter((logs - centre) * weight, 0.8, mode="nearest")
-    smooth /= np.maximum(ndimage.gaussian_filter(weight, 0.8, mode="nearest"), 1e-12)
-    by_chance = DEVIATION_OF_MEDIAN**2 / VERTICES_OF_BLOCK / 4.0  # the blur is over some four
-    spread = float(np.var(smooth[is_told.reshape(shape)]))
+    logs = 0.5 * np.log(np.where(is_told, squares, 1.0)).reshape(shape)
+    centre = float(np.median(logs[weight > 0]))
+    smooth = ndimage.gaussian_filter((logs - centre) * weight, BLUR_OF_BLOCKS, mode="nearest")
+    smooth /= np.maximum(ndimage.gaussian_filter(weight, BLUR_OF_BLOCKS, mode="nearest"), 1e-12)
+    spread = float(np.var(smooth[weight > 0]))
+    by_chance = DEVIATION_OF_BLOCK**2 / VERTICES_OF_BLOCK
     if spread <= 2 * by_chance:
         return None
     smooth *= np.sqrt(1.0 - by_chance / spread)
     at = (plan / side - 0.5).T
-    relative: FloatArray = np.exp(ndimage.map_coordinates(smooth, at, order=1, mode="nearest"))
-    return relative / float(np.median(relative))
+    logs_here = ndimage.map_coordinates(smooth, at, order=1, mode="nearest")
+    local: FloatArray = np.exp(centre + logs_here)
+    return local
 
 
 def _medians_of_blocks(

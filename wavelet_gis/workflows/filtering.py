@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -10,12 +12,12 @@ from wavelet_core import denoise
 from wavelet_core.errors import OptionError
 from wavelet_core.filtering.gains import band_gains, channel_index, check_level, relifted
 from wavelet_core.filtering.noise import channel_noise
+from wavelet_core.filtering.noise_model import Noise
+from wavelet_core.progress import Progress, part_of
 from wavelet_gis.model.categories import category_gains
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["change_between", "chosen_gains", "denoised_record", "scaled_record"]
-
-Progress = Callable[[float], bool | None]
 
 
 def denoised_record(
@@ -24,6 +26,9 @@ def denoised_record(
     *,
     channels: Sequence[str] = ("z",),
     n_pyramids: int = 8,
+    noise_range: float | Literal["estimate"] = 0.0,
+    local_noise: bool = False,
+    outliers: bool = False,
     progress: Progress | None = None,
 ) -> tuple[GeoPyramid, dict[str, float]]:
     """Return the pyramid with the noise taken out, and the noise that was taken for it.
@@ -37,7 +42,10 @@ def denoised_record(
     channels : sequence of str
         Which to take it from.
     n_pyramids : int
-        How many pyramids in random order are averaged; 0 thresholds the details of this one.
+        How many pyramids in random order are averaged; 0 thresholds the details of one.
+    noise_range, local_noise, outliers
+        As for `wavelet_core.denoise`; the range in metres where the CRS tells its unit, else in
+        its own. Not with thresholds.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -58,26 +66,47 @@ def denoised_record(
         channel_index(pyramid.channels, name)
         if name in geo.categories:
             raise OptionError(f"{name} is a category and has no noise; name another channel.")
+    if n_pyramids == 0 and (noise_range != 0.0 or local_noise or outliers):
+        raise OptionError(
+            "thresholds know white noise only; leave out the range, the noise by place and the "
+            "outliers, or average one or more pyramids."
+        )
+    reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
+    described = []
     for k, name in enumerate(channels):
         unit = geo.frame.z_scale if name == "z" else 1.0
-        deviation = channel_noise(pyramid, name) if sigma is None else sigma * unit
-        sigmas[name] = deviation / unit
+        part = part_of(progress, k / len(channels), (k + 1) / len(channels))
         if n_pyramids == 0:
-            part = _part(progress, k, len(channels))
+            deviation = channel_noise(pyramid, name) if sigma is None else sigma * unit
+            sigmas[name] = deviation / unit
+            described.append(f"{name} {sigmas[name]:.4g}")
             pyramid = pyramid.denoised(deviation, channels=[name], progress=part)
             continue
+        found: dict[str, Noise] = {}
         mesh = denoise(
             pyramid.synthesise(),
-            deviation,
+            None if sigma is None else sigma * unit,
             n_pyramids=n_pyramids,
             channels=[name],
             locked=pyramid.locked,
-            progress=_part(progress, k, len(channels)),
+            noise_range=reach,
+            local_noise=local_noise,
+            outliers=outliers,
+            found=found,
+            progress=part,
         )
+        noise = found[name]
+        sigmas[name] = noise.sigma / unit
+        in_file = replace(
+            noise,
+            sigma=noise.sigma / unit,
+            quantum=noise.quantum / unit,
+            reach=noise.reach / _metre(geo),
+        )
+        described.append(f"{name} {in_file.describe()}")
         pyramid = relifted(pyramid, mesh)
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
-    listed = ", ".join(f"{name} {deviation:.4g}" for name, deviation in sigmas.items())
-    line = f"denoised by {how}, standard deviation of the noise: {listed}"
+    line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
     return geo.with_pyramid(pyramid, line), sigmas
 
 
@@ -109,8 +138,7 @@ def chosen_gains(
     """
     chosen: dict[int, float] = {}
     if metres is not None:
-        is_metric = geo.system.kind == "geographic"
-        unit = 1.0 if is_metric else 1.0 / geo.system.horizontal_unit
+        unit = _metre(geo)
         chosen = band_gains(geo.pyramid, lengths=(metres[0] * unit, metres[1] * unit))
     elif levels is not None:
         chosen = band_gains(geo.pyramid, levels=levels)
@@ -150,7 +178,6 @@ def change_between(before: GeoPyramid, after: GeoPyramid) -> tuple[float, float]
     return rms, float(np.abs(moved).max(initial=0.0))
 
 
-def _part(progress: Progress | None, k: int, n: int) -> Progress | None:
-    if progress is None:
-        return None
-    return lambda fraction: progress((k + fraction) / n)
+def _metre(geo: GeoPyramid) -> float:
+    """Return a metre in the unit of the working frame, where that is known."""
+    return 1.0 if geo.system.kind == "geographic" else 1.0 / geo.system.horizontal_unit

@@ -59,8 +59,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         const=ESTIMATED,
         metavar="SIGMA",
-        help="take out white noise of this standard deviation, in the unit of z; estimated where "
+        help="take out noise of this standard deviation, in the unit of z; estimated where "
         "it is not given. Before any gain",
+    )
+    noise.add_argument(
+        "--noise-range",
+        type=_range,
+        default=0.0,
+        metavar="LENGTH|auto",
+        help="distance at which the correlation of the noise has fallen to 1/e, in metres where "
+        "the CRS tells its unit; auto estimates it. By default the noise is white",
+    )
+    noise.add_argument(
+        "--local-noise", action="store_true", help="the noise differs by place: measure it there"
+    )
+    noise.add_argument(
+        "--outliers", action="store_true", help="replace values that stand out of their ring first"
     )
     noise.add_argument(
         "--pyramids",
@@ -93,6 +107,11 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
 
     check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
     asks_scales = bool(arguments.gain or arguments.band or arguments.band_metres)
+    asks_noise = arguments.noise_range != 0.0 or arguments.local_noise or arguments.outliers
+    if asks_noise and arguments.denoise is None:
+        raise OptionError(
+            "--noise-range, --local-noise and --outliers tell of noise; give --denoise too."
+        )
     if not asks_scales and not arguments.no_coarse and arguments.denoise is None:
         raise OptionError("nothing to change; give --gain, --band, --band-metres or --denoise.")
     geo = read_pyramid(arguments.file)
@@ -107,6 +126,9 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
                 None if arguments.denoise is ESTIMATED else arguments.denoise,
                 channels=tuple(arguments.channel or ("z",)),
                 n_pyramids=arguments.pyramids,
+                noise_range=arguments.noise_range,
+                local_noise=arguments.local_noise,
+                outliers=arguments.outliers,
                 progress=progress,
             )
         figures = {"sigma": sigmas, "n_pyramids": arguments.pyramids}
@@ -201,6 +223,15 @@ def _metres(text: str) -> tuple[float, float]:
         return float(low or 0.0), float(high or "inf")
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is no LO:HI such as 5:50 or 10:") from None
+
+
+def _range(text: str) -> float | str:
+    if text == "auto":
+        return "estimate"
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no length, nor auto") from None
 
 
 def _sigma(text: str) -> float:
