@@ -101,7 +101,8 @@ class UndecimatedBank:
         tick : callable
             See the attribute.
         """
-        rows, columns, offsets = rings(mesh)
+        tick()
+        rows, columns, offsets = rings(mesh, tick)
         is_free = np.ones(mesh.n_vertices)
         if locked is not None:
             is_free -= np.asarray(locked, dtype=bool)
@@ -188,17 +189,22 @@ def _parts(details: FloatArray, along: list[FloatArray], strength: float) -> Flo
     return np.stack([*parts, details - sum(parts)], axis=2)
 
 
-def rings(mesh: TriangleMesh) -> tuple[IndexArray, IndexArray, FloatArray]:
+def rings(
+    mesh: TriangleMesh, tick: Callable[[], None] = _nothing
+) -> tuple[IndexArray, IndexArray, FloatArray]:
     """Return vertex, neighbour and offset in mean ring distances; every vertex is its own too."""
     n = mesh.n_vertices
     a, b, c = mesh.faces.T
     start, end = np.concatenate([a, b, c, b, c, a]), np.concatenate([b, c, a, a, b, c])
     pattern = csr_array((np.ones(len(start)), (start, end)), shape=(n, n))
     pattern = csr_array(pattern + identity(n))
+    tick()
     pattern.sort_indices()
+    tick()
     rows = np.repeat(np.arange(n), np.diff(pattern.indptr))
     columns = pattern.indices.astype(np.int64)
     offsets = mesh.vertices[columns, :2] - mesh.vertices[rows, :2]
+    tick()
     total = np.bincount(rows, np.hypot(*offsets.T), n)
     mean = total / np.maximum(np.bincount(rows, minlength=n) - 1, 1)
     return rows, columns, offsets / np.where(mean > 0, mean, 1.0)[rows, None]

@@ -1,4 +1,4 @@
-"""Classes learned from labelled vertices: what may be looked at, how well it works, what is said."""
+"""Classes learned from labelled vertices: from what, how well it works, and what is said."""
 
 from __future__ import annotations
 
@@ -106,8 +106,7 @@ def learn(
     left_out = answers_among(geo, given) if is_las else ()
     if left_out:
         notes.append(
-            f"not learned from {', '.join(left_out)}: {'they hold' if len(left_out) > 1 else 'it holds'}"
-            " the class itself, or comes from it"
+            f"not learned from {', '.join(left_out)}, which hold the class itself or come from it"
         )
     features = features_without(geo.pyramid, left_out, part_of(progress, 0.0, 0.5))
     validation = None
