@@ -38,7 +38,7 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
         """Return the path of the pyramid file, without the name of a layer in it."""
         return self.parameterAsString(parameters, "INPUT", context).split("|")[0]
 
-    def geo(self, parameters, context, feedback):
+    def geo_pyramid(self, parameters, context, feedback):
         """Return the ``GeoPyramid`` in the file."""
         from ..parameters.pyramid import load
 
