@@ -83,7 +83,7 @@ def energy_signature(
     channels : sequence of str
         Some of the pyramid's; the geometry alone when empty.
     progress : callable, optional
-        See :func:`wavelet_core.features.spectrum.band_energies`.
+        See :func:`wavelet_core.band_energies`.
 
     Returns
     -------
@@ -150,7 +150,7 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     names += [f"height above lows of {first}" for first, _ in bands]
     names += [f"rms geometry {label}" for label in labels]
     details = vertex_details(pyramid)
-    column = 0 if pyramid.signal == "z" else 2
+    column = pyramid.channels.index("z")
     blocks += [np.nan_to_num(details.vectors[:, [column]]), details.level[:, None]]
     names += ["own detail", "level"]
     for k, attribute in enumerate(pyramid.attribute_names):
@@ -203,5 +203,5 @@ def _log_energies(
 def _require_levels(pyramid: Pyramid) -> None:
     if pyramid.n_levels == 0:
         raise OptionError(
-            "the pyramid has no levels, so its vertices have no scales; analyse more."
+            "{0} has no levels, so its vertices have no scales; analyse more.", "pyramid"
         )

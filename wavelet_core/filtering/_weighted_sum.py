@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import lsq_linear
 
 from .._validate import FloatArray
 from ..lifting.linear_map import LinearStep, Transform
+from ._bounded import least_within, moments_of
 from .noise import local_energy
 from .noise_model import Noise
 from .undecimated import UndecimatedBank
@@ -41,7 +41,8 @@ class Damping(NamedTuple):
         damping = [np.ones(energy.shape)]
         with np.errstate(over="ignore"):  # the energy of a rock in units of a noise of nothing
             damping += [np.exp(-((energy / scale) ** 2)) for scale in self.scales]
-        return details[..., None] * (np.stack(damping, axis=-1) @ self._weights_of_changes())
+        weights = self._weights_of_changes()
+        return details[..., None] * np.einsum("...d,de->...e", np.stack(damping, axis=-1), weights)
 
     def _weights_of_changes(self) -> FloatArray:
         """Return the weights of the elements for a change of 1 at each probed energy alone."""
@@ -155,10 +156,10 @@ class WeightedSum:
         plane or of energies that no detail has, take no part.
         """
         share = len(self._columns) / len(self._values)
-        moments = self._columns.T @ self._columns
+        moments = moments_of(self._columns)
         pull = -(self._sigma**2) * share * self._divergence
         size = np.sqrt(np.diag(moments))
-        floor = ROUNDING * max(float(np.linalg.norm(self._values)), ROUNDING * size.max())
+        floor = ROUNDING * max(float(np.sqrt(np.sum(self._values**2))), ROUNDING * size.max())
         holds = size > floor
         self._weights = np.zeros(len(size))
         if holds.any():
@@ -169,7 +170,7 @@ class WeightedSum:
                 np.flatnonzero(holds) < self._first_of_vertices,
             )
         if finish:
-            self.result += self._columns @ self._weights
+            self.result += np.einsum("vk,k->v", self._columns, self._weights)
 
     def _changes(
         self,
@@ -178,28 +179,29 @@ class WeightedSum:
         size: FloatArray,
         is_of_pyramids: NDArray[np.bool_],
     ) -> FloatArray:
-        """Return the least of ``b' M b / 2 - pull b`` within the bounds, by least squares."""
-        values, vectors = np.linalg.eigh(moments / np.outer(size, size))
-        root = np.sqrt(np.maximum(values, 0.0) + RIDGE)
-        target = (vectors.T @ (pull / size)) / root
-        rows = root[:, None] * vectors.T
+        """Return the least of ``b' M b / 2 - pull b`` within the bounds."""
+        scaled = moments / (size[:, None] * size) + RIDGE * np.eye(len(size))
         least, changes = np.inf, np.zeros(len(size))
         for share_of_pyramids in SHARES_OF_PYRAMIDS:
             room = np.where(is_of_pyramids, share_of_pyramids, 1.0 - share_of_pyramids) * size
             is_open = room > 0
             if not is_open.any():
                 continue
-            bounds = (LEAST_CHANGE * room[is_open], MOST_CHANGE * room[is_open])
-            found = lsq_linear(rows[:, is_open], target, bounds, method="bvls")
-            if found.cost < least:
-                least, changes = found.cost, np.zeros(len(size))
-                changes[is_open] = found.x
+            found, cost = least_within(
+                scaled[np.ix_(is_open, is_open)],
+                (pull / size)[is_open],
+                LEAST_CHANGE * room[is_open],
+                MOST_CHANGE * room[is_open],
+            )
+            if cost < least:
+                least, changes = cost, np.zeros(len(size))
+                changes[is_open] = found
         return changes / size
 
     def add_vertices(self) -> None:
         """Add the weighted details of all vertices to the result."""
         for where, damped in self._damped_by_vertices(self._values[:, None]):
-            self.result += damped[:, 0] @ self._weights[where]
+            self.result += np.einsum("vk,k->v", damped[:, 0], self._weights[where])
 
     def add(self, transform: Transform, gains: list[FloatArray]) -> None:
         """Add the weighted details of one pyramid to the result."""
@@ -207,7 +209,8 @@ class WeightedSum:
         sums = {}
         for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
             damped = _damped(step, details[level], self._sigma * gain, transform.tick)[:, 0]
-            sums[level] = damped @ self._weights[_block(len(gains) - 1 - level)][:, None]
+            weights = self._weights[_block(len(gains) - 1 - level)]
+            sums[level] = np.einsum("vk,k->v", damped, weights)[:, None]
         if sums:
             self.result += self._share * transform.synthesise_bands(sums)[:, 0]
 

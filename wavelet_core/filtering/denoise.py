@@ -131,9 +131,9 @@ def denoise(
     """
     check_sigma(sigma)
     if n_pyramids < 1:
-        raise OptionError(f"n_pyramids is {n_pyramids}; give 1 or more.")
+        raise OptionError("{0} is {given}; give 1 or more.", "n_pyramids", given=n_pyramids)
     if levels < 1:
-        raise OptionError(f"levels is {levels}; give 1 or more.")
+        raise OptionError("{0} is {given}; give 1 or more.", "levels", given=levels)
     names = ("z", *mesh.attribute_names)
     chosen = {name: channel_index(names, name) for name in channels}
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])

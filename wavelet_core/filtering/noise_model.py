@@ -155,7 +155,9 @@ def noise_of(
     check_sigma(sigma)
     if noise_range != "estimate" and not (np.isfinite(noise_range) and noise_range >= 0):
         raise OptionError(
-            f"noise_range is {noise_range!r}; give a distance of 0 or more, or 'estimate'."
+            "{0} is {given}; give a distance of 0 or more, or 'estimate'.",
+            "noise_range",
+            given=repr(noise_range),
         )
     quantum = 0.0
     if sigma is None:

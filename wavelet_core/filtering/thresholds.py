@@ -13,6 +13,7 @@ from ..errors import OptionError
 from ..lifting.analyse import analyse
 from ..lifting.linear_map import LinearStep, Transform
 from ..lifting.pyramid import Pyramid
+from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Progress, part_of, report
 from .gains import channel_index, relifted
 from .noise import channel_noise, check_sigma, deviation_of, local_energy, noise_gains
@@ -36,6 +37,7 @@ def denoised(
     local: bool = False,
     by_level: bool = False,
     channels: Sequence[str] = ("z",),
+    finest: TriangleMesh | None = None,
     progress: Progress | None = None,
 ) -> Pyramid:
     r"""Return the pyramid with thresholded details.
@@ -60,6 +62,8 @@ def denoised(
         then be left out.
     channels : sequence of str
         Which channels to change.
+    finest : TriangleMesh, optional
+        The pyramid's finest mesh, where it has been synthesised already.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -84,17 +88,22 @@ def denoised(
     compression. IEEE Transactions on Image Processing 9, 2000.
     """
     if method not in METHODS:
-        raise OptionError(f"method is {method!r}; give one of {', '.join(METHODS)}.")
+        raise OptionError(
+            "{0} is {given}; give one of {methods}.",
+            "method",
+            given=repr(method),
+            methods=", ".join(METHODS),
+        )
     if not (np.isfinite(strength) and strength >= 0):
-        raise OptionError(f"strength is {strength}; give a number of 0 or more.")
+        raise OptionError("{0} is {given}; give a number of 0 or more.", "strength", given=strength)
     if by_level and sigma is not None:
-        raise OptionError("sigma and by_level exclude each other; give one.")
+        raise OptionError("{0} and {1} exclude each other; give one.", "sigma", "by_level")
     check_sigma(sigma)
     columns = {name: channel_index(pyramid.channels, name) for name in channels}
     if not pyramid.steps or sigma == 0 or strength == 0:
         return pyramid
     if not _is_plain(pyramid):
-        mesh = pyramid.synthesise()
+        mesh = pyramid.synthesise() if finest is None else finest
         plain = analyse(mesh, **PLAIN, locked=pyramid.locked, progress=part_of(progress, 0.0, 0.7))
         if not plain.steps:
             return pyramid

@@ -257,7 +257,7 @@ def _curvatures(
     found = []
     for angle in np.pi / N_DIRECTIONS * np.arange(N_DIRECTIONS):
         east, north = np.cos(angle), np.sin(angle)
-        entries = second @ [east**2, east * north, north**2]
+        entries = east**2 * second[:, 0] + east * north * second[:, 1] + north**2 * second[:, 2]
         entries = np.where(rows == columns, -np.bincount(rows, entries, n)[rows], entries)
         found.append(csr_array((entries, (rows, columns)), shape=(n, n)))
         tick()

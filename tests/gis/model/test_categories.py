@@ -8,10 +8,10 @@ from wavelet_core import OptionError, analyse
 from wavelet_gis.cli.main import main
 from wavelet_gis.io.las import write_cloud
 from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
-from wavelet_gis.model.categories import one_channel_per_category
+from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.products.layers import coarse_layers
 from wavelet_gis.products.level_raster import surface_dem
-from wavelet_gis.workflows.filtering import denoised_record, scaled_record
+from wavelet_gis.workflows.filtering import denoised, with_level_gains
 from wavelet_gis.workflows.open import open_terrain
 
 DESIGN = {"partition": "quadric", "prediction": "nnls", "levels": 4}
@@ -78,13 +78,13 @@ def test_filters_leave_classes_alone(tmp_path, version, point_format):
     path = write_las(tmp_path / "a.las", 900, version=version, point_format=point_format)
     terrain = open_terrain(path, attributes=["classification", "intensity"])
     geo = terrain.geo_pyramid(analyse(terrain.mesh, **DESIGN))
-    flat = scaled_record(geo, dict.fromkeys(range(4), 0.0), drops_coarse=True)
+    flat = with_level_gains(geo, dict.fromkeys(range(4), 0.0), drop_coarse=True)
     write_cloud(tmp_path / "b.las", flat.restore())
     before, after = laspy.read(path), laspy.read(tmp_path / "b.las")
     np.testing.assert_array_equal(before.classification, after.classification)
     assert (np.array(after.intensity) != np.array(before.intensity)).mean() > 0.9
     with pytest.raises(OptionError, match="classification is a category"):
-        denoised_record(geo, 0.1, channels=["classification"])
+        denoised(geo, 0.1, channels=["classification"])
 
 
 @pytest.mark.parametrize(("version", "point_format"), [("1.2", 3), ("1.4", 6)])
