@@ -14,6 +14,7 @@ from wavelet_core.accuracy.between_levels import PartialMesh, mesh_of_accuracy, 
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import Cover, surface_errors
 from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
+from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.lone_vertices import lone_vertices
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
@@ -71,6 +72,7 @@ class Surface:
         attribute: str | None = None,
         cog: bool = False,
         to_crs: str | None = None,
+        categories: Categories = "nearest",
     ) -> dict[str, int]:
         """Write it as a TIN or a raster; see `wavelet_gis.workflows.save.save`.
 
@@ -83,6 +85,8 @@ class Surface:
         to_crs : str, optional
             Of a mesh file: a projected CRS, or ``"auto"`` for the UTM zone; see
             `wavelet_gis.products.plane_mesh.plane_mesh` for what holds without it.
+        categories : {"nearest", "number"}
+            See `wavelet_gis.model.geo_pyramid.GeoPyramid.file_mesh`.
 
         Returns
         -------
@@ -99,9 +103,16 @@ class Surface:
         )
         if suffix_of(path) in RASTER_SUFFIXES:
             return write_surface_raster(
-                path, self.geo, self.mesh, cell_size=cell_size, attribute=attribute, cog=cog
+                path,
+                self.geo,
+                self.mesh,
+                cell_size=cell_size,
+                attribute=attribute,
+                cog=cog,
+                categories=categories,
             )
-        write_tin(path, self.geo, self.mesh, self.vertex_ids, f"level_{self.level:02d}", to_crs)
+        name = f"level_{self.level:02d}"
+        write_tin(path, self.geo, self.mesh, self.vertex_ids, name, to_crs, categories)
         return {}
 
     def figures(self) -> dict[str, Any]:

@@ -23,6 +23,7 @@ from wavelet_gis.io.formats import (
     suffix_of,
 )
 from wavelet_gis.io.names import readable
+from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.origin import ORIGINS
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem, terrain_of_mesh
@@ -46,6 +47,7 @@ def open_terrain(
     attributes: Sequence[str] = (),
     classes: Sequence[int] | None = None,
     carry: bool = True,
+    class_channels: bool = False,
     crs: str | None = None,
     vertical_unit: str | None = None,
     nodata: float | str | None = None,
@@ -66,6 +68,8 @@ def open_terrain(
         Of a raster, from 1.
     attributes, classes, carry, keep_noise, keep_withheld
         Of a point cloud; see `wavelet_gis.io.las.read_cloud`.
+    class_channels : bool
+        Lift classes, return numbers and other categories as one channel of 0 and 1 each.
     crs : str, optional
         Instead of the CRS in the file.
     vertical_unit : str, optional
@@ -109,6 +113,8 @@ def open_terrain(
             keep_noise=keep_noise,
             keep_withheld=keep_withheld,
         )
+        if class_channels:
+            cloud = one_channel_per_category(cloud)
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
             readable(path),
