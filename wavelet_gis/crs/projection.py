@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.errors import CrsError
@@ -36,6 +38,8 @@ def plane_for(system: CoordinateSystem, xy: FloatArray, to_crs: str = AUTO) -> C
     ------
     CrsError
         Without a CRS to start from, or when the one to go to is none of a plane.
+    MissingDependencyError
+        Without pyproj, as QGIS may be.
     """
     if system.wkt is None or system.kind == "unknown":
         raise CrsError(
@@ -43,6 +47,11 @@ def plane_for(system: CoordinateSystem, xy: FloatArray, to_crs: str = AUTO) -> C
             "{1} out.",
             "crs",
             "to_crs",
+        )
+    if find_spec("pyproj") is None:
+        raise MissingDependencyError(
+            "coordinates go to another CRS by pyproj; install it with 'pip install pyproj', or "
+            "give input in a projected CRS."
         )
     if to_crs.lower() != AUTO:
         plane = coordinate_system(to_crs)

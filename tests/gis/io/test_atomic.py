@@ -7,9 +7,10 @@ import tempfile
 
 import pytest
 
+from wavelet_core import Cancelled
 from wavelet_gis.errors import CrsWarning, OutputFileError, TerrainWarning
 from wavelet_gis.io.atomic import check_output, new_file
-from wavelet_gis.io.read_back import write_text
+from wavelet_gis.io.read_back import read_back, write_text
 
 
 def names_in(folder):
@@ -219,3 +220,28 @@ def test_what_killed_runs_left_is_swept_after_a_day(tmp_path):
         finish(tmp_path / "c.txt", "later", overwrite=True)
         assert scratch.exists()
     assert names_in(tmp_path) == ["b.txt", "c.txt", "held.txt"]
+
+
+def test_errors_in_the_words_of_a_flag_name_the_file_too(tmp_path):
+    def write():
+        with new_file(tmp_path / "a.txt") as scratch:
+            raise OutputFileError("{path}: refused; leave {0} out", "cog", path=scratch)
+
+    with pytest.raises(OutputFileError) as caught:
+        write()
+    told = caught.value.in_words(lambda name: f"--{name}")
+    assert told == f"{tmp_path / 'a.txt'}: refused; leave --cog out"
+
+
+def test_a_check_may_be_stopped(tmp_path):
+    def stop(path):
+        raise Cancelled("stopped")
+
+    def write():
+        with new_file(tmp_path / "a.txt") as scratch:
+            write_text(scratch, "whole")
+            read_back(scratch, stop)
+
+    with pytest.raises(Cancelled):
+        write()
+    assert names_in(tmp_path) == []
