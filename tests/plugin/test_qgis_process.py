@@ -168,7 +168,7 @@ def test_results_equal_the_command_lines(run, command_line, tmp_path):
         },
     )
     assert "wavelet_gis" in sys.modules
-    from wavelet_gis.io.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
     left, right = read_pyramid(of_command), read_pyramid(of_qgis)
     assert left.frame == pytest.approx(right.frame) or left.frame == right.frame

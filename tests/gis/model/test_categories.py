@@ -8,7 +8,7 @@ from wavelet_core import OptionError, analyse
 from wavelet_gis.cli.main import main
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.las import write_cloud
-from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.products.layers import coarse_layers
 from wavelet_gis.products.level_raster import surface_dem

@@ -101,7 +101,7 @@ class Labelled:
             cloud = cloud_with_classes(self.geo, self.labels, self.unlabelled, self.merges)
             write_cloud(path, cloud)
         elif suffix in RASTER_SUFFIXES:
-            from wavelet_gis.products.vertex_raster import write_bands
+            from wavelet_gis.io.raster import write_bands
 
             write_bands(path, self.raster(cell_size), self.geo.system.wkt)
         else:
