@@ -77,6 +77,18 @@ def find_outgoing(start, stop, indptr, star, mesh, n_fans):
             n_fans[vertex] = 1 if n_walked == degree and n_open < 2 else 2
 
 
+# mesh.outgoing, filled anew: the first half-edge that leaves each vertex, or the one without a twin
+@njit
+def renew_outgoing(mesh, face_lives):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    outgoing[:] = -1
+    for face in range(face_lives.shape[0]):
+        if face_lives[face]:
+            for half_edge in range(3 * face, 3 * face + 3):
+                if outgoing[origin[half_edge]] < 0 or twin[half_edge] < 0:
+                    outgoing[origin[half_edge]] = half_edge
+
+
 @inlined
 def moved(half_edge, face_position):
     return 3 * face_position[half_edge // 3] + half_edge % 3 if half_edge >= 0 else -1

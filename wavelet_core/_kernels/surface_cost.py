@@ -313,7 +313,7 @@ def collapse_costs(
                     j, size, n_points, px, py, pz, rx, ry, rz, fan_x, fan_y, slope_x, slope_y, True,
                     cutoff, here, 0.0,
                 )[0]  # fmt: skip
-            cost[v] = here
+            cost[v] = min(here, cutoff)
             is_stale[v] = here > cutoff  # a lower bound only
 
 

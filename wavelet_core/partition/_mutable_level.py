@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
 from .._kernels.connectivity import fill_stars
-from .._kernels.half_edges import HalfEdges, find_outgoing, find_twins, pack_faces, pack_vertices
+from .._kernels.half_edges import HalfEdges, find_outgoing, find_twins, pack_faces, pack_vertices, renew_outgoing
 from .._kernels.surface_choice import (
     CANDIDATE,
     TAKEN,
@@ -253,6 +253,7 @@ class SurfaceLevel:
         stamp = np.zeros(len(self._ids), dtype=np.int32)
         lives = (self._vertex_lives, self._face_lives)
         collapse_all(odd, indptr, ring, ring_faces, self._mesh, *lives, stamp, goes)
+        renew_outgoing(self._mesh, self._face_lives)
         if goes.all():
             return odd, indptr, ring, ring_faces
         self._cost[odd[~goes]] = np.inf  # until its star changes
