@@ -27,12 +27,12 @@ class Rings(NamedTuple):
 
 def before(half_edge):
     """Return the half-edge before each, in its face."""
-    return np.where(half_edge % 3 == 0, half_edge + 2, half_edge - 1)
+    return half_edge - 1 + 3 * (half_edge % 3 == 0)
 
 
 def after(half_edge):
     """Return the half-edge after each, in its face."""
-    return np.where(half_edge % 3 == 2, half_edge - 2, half_edge + 1)
+    return half_edge + 1 - 3 * (half_edge % 3 == 2)
 
 
 def rings_of(vertices: NDArray[np.integer], mesh: HalfEdges) -> Rings:

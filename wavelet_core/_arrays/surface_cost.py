@@ -141,71 +141,69 @@ def _gather(v, ring, spoke, is_outline, rx, ry, surface, points):
 def _legal_targets(block, known, measured, tolerance):
     """Cover and own error of each legal target, and the targets in the order of these errors."""
     n, size = block.ring.shape
-    rows = np.arange(n)
-    diameter = np.zeros(n)
-    for k in range(size):
-        diameter = np.maximum(diameter, 4.0 * (block.rx[:, k] ** 2 + block.ry[:, k] ** 2))
-    own = np.full((n, size), np.inf)
-    cover = np.full((n, size), NONE)
-    at_b, at_c = np.zeros((n, size)), np.zeros((n, size))
-    for j in range(0, size, size - 1 if block.is_outline else 1):
-        b, at_b[:, j], at_c[:, j] = _cover_from(j, block, diameter)
-        legal = b != NONE
-        legal &= (known < 0) | (block.ring[:, j] == known)
-        b = np.where(legal, b, 0)
-        c = (b + 1) % size
-        here, here_z = np.zeros(n), np.zeros(n)
-        for i in range(block.rz.shape[2]):
-            at_j = block.rz[:, j, i]
-            error = (
-                at_j
-                + at_b[:, j] * (block.rz[rows, b, i] - at_j)
-                + at_c[:, j] * (block.rz[rows, c, i] - at_j)
-            ) - measured[block.v, i]
-            here += error * error
-            if i == 0:
-                here_z = here.copy()
-        legal &= here_z <= tolerance
-        own[legal, j], cover[legal, j] = here[legal], b[legal]
     reach = block.rx**2 + block.ry**2
+    # on the outline only its two neighbours are targets
+    targets = np.array([0, size - 1]) if block.is_outline else np.arange(size)
+    b, at_b, at_c = _covers_from(targets, block, 4.0 * reach.max(axis=1))
+    legal = b != NONE
+    legal &= (known[:, None] < 0) | (block.ring[:, targets] == known[:, None])
+    b = np.where(legal, b, 0)
+    c = np.where(b + 1 < size, b + 1, 0)
+    each = np.arange(n)[:, None]
+    here = np.zeros(b.shape)
+    for i in range(block.rz.shape[2]):
+        z = block.rz[:, :, i]
+        at_j = z[:, targets]
+        error = (at_j + at_b * (z[each, b] - at_j) + at_c * (z[each, c] - at_j)) - measured[
+            block.v, i, None
+        ]
+        here += error * error
+        if i == 0:
+            legal &= here <= tolerance
+    own, cover = np.full((n, size), np.inf), np.full((n, size), NONE)
+    own[:, targets] = np.where(legal, here, np.inf)
+    cover[:, targets] = np.where(legal, b, NONE)
+    weights_b, weights_c = np.zeros((n, size)), np.zeros((n, size))
+    weights_b[:, targets], weights_c[:, targets] = at_b, at_c
     order = np.lexsort((reach, own), axis=1)
-    n_legal = (cover != NONE).sum(axis=1)
-    return (cover, at_b, at_c), own, order, n_legal
+    return (cover, weights_b, weights_c), own, order, legal.sum(axis=1)
 
 
-def _cover_from(j, block, diameter):
+def _covers_from(targets, block, diameter):
+    """Corner before the face that would hold v, and v's weights, for the fan around each target."""
     rx, ry, size = block.rx, block.ry, block.rx.shape[1]
-    n = len(rx)
-    ax, ay = rx[:, j], ry[:, j]
-    k = (j + 1) % size
-    previous = ax * ry[:, k] - ay * rx[:, k]
-    is_legal = np.ones(n, dtype=bool)
-    found, at_b, at_c = np.full(n, NONE), np.zeros(n), np.zeros(n)
+    ax, ay = rx[:, targets], ry[:, targets]
+    k = (targets + 1) % size
+    kx, ky = rx[:, k], ry[:, k]
+    previous = ax * ky - ay * kx
+    is_legal = np.ones(ax.shape, dtype=bool)
+    found, at_b, at_c = np.full(ax.shape, NONE), np.zeros(ax.shape), np.zeros(ax.shape)
+    thinnest = FLATNESS_TOLERANCE * diameter[:, None]
     for t in range(size - 2):
         following = (k + 1) % size
-        behind = ax * ry[:, following] - ay * rx[:, following]
-        area = rx[:, k] * ry[:, following] - ry[:, k] * rx[:, following] + previous - behind
-        thin = np.flatnonzero(area <= FLATNESS_TOLERANCE * diameter)
-        if len(thin):
-            is_legal[thin[_is_flat(j, k, following, rx[thin], ry[thin], area[thin])]] = False
-        begins, ends = previous >= 0.0, behind <= 0.0
+        fx, fy = rx[:, following], ry[:, following]
+        behind = ax * fy - ay * fx
+        area = kx * fy - ky * fx + previous - behind
+        thin = np.nonzero(area <= thinnest)
+        if len(thin[0]):
+            sides = (ax[thin], ay[thin], kx[thin], ky[thin], fx[thin], fy[thin])
+            is_legal[thin] &= ~_is_flat(*sides, area[thin])
         if block.is_outline:
-            begins, ends = begins | (t == 0), ends | (t == size - 3)
-        hit = np.flatnonzero(begins & ends & (found == NONE) & is_legal)
-        found[hit] = k
+            begins, ends = (previous >= 0.0) | (t == 0), (behind <= 0.0) | (t == size - 3)
+        else:
+            begins, ends = previous >= 0.0, behind <= 0.0
+        hit = np.nonzero(begins & ends & (found == NONE) & is_legal)
+        found[hit] = k[hit[1]]
         at_b[hit] = np.maximum(-behind[hit], 0.0) / area[hit]
         at_c[hit] = np.maximum(previous[hit], 0.0) / area[hit]
-        k, previous = following, behind
+        k, kx, ky, previous = following, fx, fy, behind
     return np.where(is_legal, found, NONE), at_b, at_c
 
 
-def _is_flat(a, b, c, rx, ry, area):
+def _is_flat(ax, ay, bx, by, cx, cy, area):
     longest = np.maximum(
-        (rx[:, b] - rx[:, a]) ** 2 + (ry[:, b] - ry[:, a]) ** 2,
-        np.maximum(
-            (rx[:, c] - rx[:, b]) ** 2 + (ry[:, c] - ry[:, b]) ** 2,
-            (rx[:, a] - rx[:, c]) ** 2 + (ry[:, a] - ry[:, c]) ** 2,
-        ),
+        (bx - ax) ** 2 + (by - ay) ** 2,
+        np.maximum((cx - bx) ** 2 + (cy - by) ** 2, (ax - cx) ** 2 + (ay - cy) ** 2),
     )
     return area <= FLATNESS_TOLERANCE * longest
 
