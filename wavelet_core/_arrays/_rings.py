@@ -13,6 +13,8 @@ ENTRIES_AT_ONCE = 1 << 19
 
 def by_size(sizes: NDArray[np.integer]) -> Iterator[tuple[int, NDArray[np.int64]]]:
     """Yield each size, and the rows that have it, in blocks."""
+    if len(sizes) == 0:
+        return
     order = np.argsort(sizes, kind="stable")
     sizes = sizes[order]
     edges = np.flatnonzero(np.diff(sizes, prepend=-1))

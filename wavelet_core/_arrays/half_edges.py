@@ -103,12 +103,8 @@ def set_outgoing(half_edges, mesh):
     mesh.outgoing[mesh.origin[opening]] = opening
 
 
-def renew_outgoing(mesh, vertex_lives, face_lives):
-    faces = np.flatnonzero(face_lives)
-    half_edges = (3 * faces[:, None] + np.arange(3)).ravel()
-    isolated = mesh.outgoing < 0
-    set_outgoing(half_edges, mesh)
-    del vertex_lives, isolated
+def renew_outgoing(mesh, face_lives):
+    set_outgoing((3 * np.flatnonzero(face_lives)[:, None] + np.arange(3)).ravel(), mesh)
 
 
 def moved(half_edge, face_position):

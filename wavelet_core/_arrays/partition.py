@@ -56,9 +56,7 @@ def label(
         open_rows = open_rows[is_open[candidates[open_rows]]]
         if len(open_rows) == 0:
             break
-        winners = open_rows[
-            _come_first(candidates[open_rows], rank, indptr, ring, ring_size)
-        ]
+        winners = open_rows[_come_first(candidates[open_rows], rank, indptr, ring, ring_size)]
         v = candidates[winners]
         is_open[v] = False
         place = _best_places(winners, choices, v, indptr, ring, ring_size, kind, n_faces_of, made)
@@ -120,9 +118,7 @@ def _choices(candidates, in_plan, shape, points, faces, indptr, ring, ring_size,
         is_outline = kind[v] == BOUNDARY
         is_legal = np.empty(around.shape, dtype=bool)
         for k in range(size):
-            is_legal[:, k] = _is_legal(
-                k, v, around, is_outline, in_plan, shape, edges, len(points)
-            )
+            is_legal[:, k] = _is_legal(k, v, around, is_outline, in_plan, shape, edges, len(points))
         best_first = np.lexsort((around, error), axis=1)
         into = first[rows][:, None] + np.arange(size)
         places[into] = best_first
@@ -148,14 +144,14 @@ def _contains(sorted_keys, keys):
 
 
 def _is_beside(k, other, size, is_outline):
-    """Is a ring entry the one before or after another?"""
+    """Tell whether a ring entry is the one before or after another."""
     if abs(k - other) == 1:
         return np.ones(len(is_outline), dtype=bool)
     return ~is_outline if abs(k - other) == size - 1 else np.zeros(len(is_outline), dtype=bool)
 
 
 def _is_legal(position, v, around, is_outline, in_plan, shape, edges, n):
-    """What the mesh of the level alone says of the collapse onto a ring entry (Fig. 3)."""
+    """Tell what the level alone says of the collapse onto a ring entry (Fig. 3)."""
     size = around.shape[1]
     target = around[:, position]
     legal = ~is_outline | (position in (0, size - 1))
@@ -166,9 +162,7 @@ def _is_legal(position, v, around, is_outline, in_plan, shape, edges, n):
         is_side = ~is_outline | (k < size - 1)
         b, c = around[:, k], around[:, following]
         sound = (
-            _is_upright(shape, target, b, c)
-            if in_plan
-            else _keeps_normal(shape, v, target, b, c)
+            _is_upright(shape, target, b, c) if in_plan else _keeps_normal(shape, v, target, b, c)
         )
         legal &= ~is_side | sound
     for k in range(size):
@@ -201,7 +195,7 @@ def _keeps_normal(points, v, a, b, c):
 
 
 def _come_first(v, rank, indptr, ring, ring_size):
-    """Which undecided vertices, told in order, come before all others within two edges?"""
+    """Tell which undecided vertices, in order, come before all others within two edges."""
     row, place = expanded(indptr[v] + v, ring_size[v])
     sizes = ring_size[v].astype(np.int64) + 1
     starts = np.cumsum(sizes) - sizes
@@ -234,7 +228,7 @@ def _best_places(rows, choices, v, indptr, ring, ring_size, kind, n_faces_of, ma
 
 
 def _is_legal_now(v, place, indptr, ring, ring_size, kind, n_faces_of, made, n):
-    """What collapses made earlier in the pass say."""
+    """Tell what collapses made earlier in the pass say."""
     base, size = indptr[v] + v, ring_size[v].astype(np.int64)
     is_outline = kind[v] == BOUNDARY
     target = ring[base + place]

@@ -50,7 +50,7 @@ def _unit(vectors):
 
 
 def evaluate(quadrics, points):
-    """Summed squared distance of each point under its own quadric."""
+    """Return the summed squared distance of each point under its own quadric."""
     d = points.shape[1]
     slot = 0
     total = np.zeros(len(points))

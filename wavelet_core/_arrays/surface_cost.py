@@ -53,9 +53,9 @@ def collapse_costs(
     rings = rings_of(v, mesh)
     has_ring = rings.ring >= 0
     may_go = (rings.size >= 3) & ~(locked[rings.ring] | ~has_ring).all(axis=1)
-    n_points = np.where(
-        rings.spoke >= 0, points.n_points[np.maximum(rings.spoke, 0) // 3], 0
-    ).sum(axis=1)
+    n_points = np.where(rings.spoke >= 0, points.n_points[np.maximum(rings.spoke, 0) // 3], 0).sum(
+        axis=1
+    )
     kind = 2 * rings.size + (rings.n_sides < rings.size)
     for which in np.unique(kind[may_go]):
         rows = np.flatnonzero(may_go & (kind == which))
@@ -233,9 +233,9 @@ def _fan_errors(block, rows, centre, rz, start):
         to_b = (rz[each, columns[:, :-1], i] - z_a[:, i, None]) * per_area
         to_c = (rz[each, columns[:, 1:], i] - z_a[:, i, None]) * per_area
         slope_x, slope_y = to_b * cy - to_c * by, to_c * bx - to_b * cx
-        error = (
-            z_a[row, i] + slope_x[row, wedge] * x + slope_y[row, wedge] * y
-        ) - block.pz[inside, i]
+        error = (z_a[row, i] + slope_x[row, wedge] * x + slope_y[row, wedge] * y) - block.pz[
+            inside, i
+        ]
         here = here + error * error
         if i == 0:
             here_z = here
@@ -276,9 +276,7 @@ def _updated_errors(block, rows, j, cover, before_it, surface, moments, integral
         for (_, u), at in zip(corners, (at_a, at_b, at_c), strict=True)
     ]
     norm_squared = shares[0] ** 2 + shares[1] ** 2 + shares[2] ** 2
-    factor = np.divide(
-        integrals[v], norm_squared, out=np.zeros(len(v)), where=norm_squared > 0.0
-    )
+    factor = np.divide(integrals[v], norm_squared, out=np.zeros(len(v)), where=norm_squared > 0.0)
     own_share = factor * (at_a * shares[0] + at_b * shares[1] + at_c * shares[2])
     here = -before_it[rows]
     rz = block.rz.copy()

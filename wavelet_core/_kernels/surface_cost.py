@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._jit import inlined, njit
+from ._jit import inlined, kernel
 from .half_edges import MAX_RING, walk_ring
 
 # new faces thinner than this part of their longest edge squared are refused
@@ -135,7 +135,7 @@ def fan_error(
 # tolerance: of squared height errors; cutoff: costs above need not be exact
 # cost (n,) float64, target (n,) int32, is_stale, is_new (n,) bool: filled. Where only heights have
 # changed (not is_new), the target stays the one that it was.
-@njit
+@kernel
 def collapse_costs(
     start, stop, todo, mesh, surface, points, stays, locked, squared, moments, integrals, norm,
     tolerance, cutoff, cost, target, is_stale, is_new,

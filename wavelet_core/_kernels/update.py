@@ -1,6 +1,6 @@
 """Kernels of :mod:`wavelet_core.lifting.update`: the sequential one-ring-mean update."""
 
-from ._jit import njit
+from ._jit import kernel, njit
 
 
 # The constant that Eq. 46 adds to the unlocked ring of one odd vertex, for one channel:
@@ -29,7 +29,7 @@ def ring_constant(first, last, columns, weights, detail, locked, even, channel):
 
 # indptr (n_odd + 1,) int64, columns (nnz,) int32, weights (nnz,), details (n_odd, n_channels),
 # locked (n_even,) bool; even (n_even, n_channels) float64, changed
-@njit
+@kernel
 def add_ring_means(indptr, columns, weights, details, locked, even):
     for row in range(details.shape[0]):
         for channel in range(details.shape[1]):
@@ -42,7 +42,7 @@ def add_ring_means(indptr, columns, weights, details, locked, even):
                     even[columns[k], channel] += constant
 
 
-@njit
+@kernel
 def subtract_ring_means(indptr, columns, weights, details, locked, even):
     for row in range(details.shape[0] - 1, -1, -1):
         for channel in range(details.shape[1]):

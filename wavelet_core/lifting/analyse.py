@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._kernels._jit import announce_fallback
+from .._kernels._jit import announce_engine
 from .._validate import FloatArray, frozen
 from ..errors import Cancelled, MeshError, OptionError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
@@ -147,7 +147,7 @@ def analyse(
         norm=norm,
         removal_fraction=removal_fraction,
     )
-    announce_fallback(mesh.n_vertices)
+    announce_engine(mesh.n_vertices)
     return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
 
 

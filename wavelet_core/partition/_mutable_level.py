@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
 from .._kernels.connectivity import fill_stars
-from .._kernels.half_edges import HalfEdges, find_outgoing, find_twins, pack_faces, pack_vertices, renew_outgoing
+from .._kernels.half_edges import (
+    HalfEdges,
+    find_outgoing,
+    find_twins,
+    pack_faces,
+    pack_vertices,
+    renew_outgoing,
+)
 from .._kernels.surface_choice import (
     CANDIDATE,
     TAKEN,
