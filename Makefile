@@ -4,13 +4,17 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest
+# Two workers on two cores take little more than half the time; tests that time nothing allow it.
+PARALLEL ?= --numprocesses auto
 
-.PHONY: help demo test test-fast test-qgis test-qgis-numpy2 lint plugin clean
+.PHONY: help demo test test-compiled test-plain test-fast test-qgis test-qgis-numpy2 lint plugin clean
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
-	@echo "make test       all tests, with numba and then without it, and the plugin's in QGIS"
-	@echo "make test-fast  the core's tests on small inputs, with numba only"
+	@echo "make test       all tests: the three parts below, each whatever the others came to"
+	@echo "make test-compiled  the tests of core, files and command line, kernels compiled by numba"
+	@echo "make test-plain  the core's small tests again, kernels as plain Python"
+	@echo "make test-fast  the core's small tests only, compiled"
 	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
 	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"
 	@echo "make lint       ruff, mypy and numpydoc"
@@ -25,11 +29,15 @@ $(BIN)/.installed-%: pyproject.toml scripts/setup-venv.sh
 demo: $(BIN)/.installed-demo
 	@$(BIN)/python examples/demo.py demo_output
 
-# The kernels run compiled, then as the plain Python that is left where numba is absent.
-test: $(BIN)/.installed-dev
-	$(PYTEST)
-	TERRAIN_WAVELETS_NO_NUMBA=1 $(PYTEST) tests/core -m "not large and not data"
-	@$(MAKE) --no-print-directory test-qgis
+# A part that fails does not hide the others: with --keep-going all run, and all are told of.
+test:
+	@$(MAKE) --no-print-directory --keep-going test-compiled test-plain test-qgis
+
+test-compiled: $(BIN)/.installed-dev
+	$(PYTEST) --ignore tests/plugin --ignore tests/models $(PARALLEL)
+
+test-plain: $(BIN)/.installed-dev
+	TERRAIN_WAVELETS_NO_NUMBA=1 $(PYTEST) tests/core -m "not large and not data" $(PARALLEL)
 
 test-fast: $(BIN)/.installed-dev
 	$(PYTEST) tests/core tests/test_imports.py -m "not large and not data" -x -q
@@ -41,6 +49,7 @@ test-qgis:
 test-qgis-numpy2:
 	@bash scripts/qgis-test.sh --chroot
 
+# The plugin is checked against stubs of QGIS, so that this needs no QGIS.
 lint: $(BIN)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .

@@ -32,7 +32,7 @@ def rmse_by_level(pyramid):
     span = np.ptp(wanted, axis=0)
     span[span == 0] = 1.0
     rmse = []
-    for level, mesh in pyramid.meshes():
+    for level, mesh in enumerate(pyramid):
         columns = np.column_stack([mesh.vertices, mesh.attributes])
         moved = (columns - wanted[pyramid.vertex_ids(level)]) / span
         rmse.append(np.sqrt(np.mean((moved**2).sum(axis=1))))
@@ -50,7 +50,7 @@ def cloud_rows(path, levels):
     mesh = open_terrain(path, attributes=("classification", "hag"), carry=False).mesh
     figures = {}
     for design in DESIGNS:
-        pyramid = analyse(mesh, levels, partition="quadric", prediction=design, signal="xyz")
+        pyramid = analyse(mesh, levels=levels, partition="quadric", prediction=design, signal="xyz")
         figures[design] = mean_share_removed(pyramid), rmse_by_level(pyramid)
     return mesh.n_vertices, figures
 
@@ -91,7 +91,7 @@ def report_dem(path, levels, max_points):
     for signal in ("z", "xyz"):
         start = perf_counter()
         pyramid = analyse(
-            terrain.mesh, levels, partition="quadric", prediction="GLMN", signal=signal
+            terrain.mesh, levels=levels, partition="quadric", prediction="GLMN", signal=signal
         )
         seconds = perf_counter() - start
         shares.append(f"{signal} {100 * mean_share_removed(pyramid):5.1f} % in {seconds:4.1f} s")

@@ -56,7 +56,7 @@ def rebuild(geo):
     """Return the meshes of all levels, in file coordinates, and the seconds each took."""
     meshes, seconds = {}, {}
     start = perf_counter()
-    for level, mesh in geo.pyramid.meshes():
+    for level, mesh in enumerate(geo.pyramid):
         seconds[level] = perf_counter() - start
         meshes[level] = geo.file_mesh(mesh)
     return meshes, seconds
@@ -69,7 +69,7 @@ def print_table(geo, seconds):
         f" {'rmse_surface':>13} {'max_error_surface':>18} {'seconds':>8}"
     )
     print(header)
-    for row in geo.errors:
+    for row in reversed(geo.errors):
         print(
             f"{row.level:>5} {row.n_vertices:>9,} {row.n_faces:>10,}"
             f" {row.rmse_coefficients:>18.6f} {row.rmse_surface:>11.2f} m"

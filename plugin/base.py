@@ -3,104 +3,148 @@
 from __future__ import annotations
 
 import html
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from qgis.core import (
-    QgsProcessingAlgorithm,
-    QgsProcessingException,
-    QgsProcessingParameterDefinition,
-)
+from qgis.core import QgsProcessingAlgorithm
 from qgis.PyQt.QtGui import QIcon
 
 from .packages import ICON, install_finder
+from .parameters.request import Request
 from .ui import dependencies
+from .ui.enums import ADVANCED
+from .ui.exceptions import QgsProcessingException
 from .ui.translation import tr
 from .ui.warning_log import shown_in
-from .ui.wording import for_dialog
+from .ui.wording import in_words, labels_of
 
-ADVANCED = QgsProcessingParameterDefinition.Flag.FlagAdvanced
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from qgis.core import (
+        QgsProcessingContext,
+        QgsProcessingFeedback,
+        QgsProcessingParameterDefinition,
+    )
+
+    from wavelet_gis.notes import Note
+
+#: What QGIS hands over for each parameter, by its name, and takes back for each output.
+Values = dict[str, Any]
 
 
 class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
     """Base of every algorithm.
 
     A subclass gives ``name`` (public, never changed), ``displayName``, ``GROUP``, ``tags``,
-    ``about``, ``initAlgorithm`` and ``work``; the rest is here.
+    ``about``, ``declare`` and ``work``; the rest is here.
     """
 
-    #: Id and translatable name of the group in the toolbox; see ``groups.py``.
-    GROUP = None
-    #: Packages needed beyond numpy and scipy, as ``dependencies.Package``.
-    PACKAGES = ()
+    #: Id of the group in the toolbox.
+    GROUP: ClassVar[str]
+    #: Packages needed beyond NumPy and SciPy.
+    PACKAGES: ClassVar[tuple[dependencies.Package, ...]] = ()
 
-    def tr(self, text):
-        """Return ``text`` in the user's language."""
-        return tr(text)
-
-    def createInstance(self):
+    def createInstance(self) -> TerrainWaveletsAlgorithm:
         """Return a new algorithm of the same kind."""
         return type(self)()
 
-    def groupId(self):
+    def groupId(self) -> str:
         """Return the id of the group in the toolbox."""
         return self.GROUP
 
-    def group(self):
+    def group(self) -> str:
         """Return the name of the group in the toolbox."""
         return {
-            "analysis": self.tr("Analysis"),
-            "reconstruction": self.tr("Reconstruction"),
-            "details": self.tr("Details"),
-            "quality": self.tr("Quality"),
+            "analysis": tr("Analysis"),
+            "reconstruction": tr("Reconstruction"),
+            "details": tr("Details"),
+            "quality": tr("Quality"),
         }[self.GROUP]
 
-    def icon(self):
+    def icon(self) -> QIcon:
         """Return the provider's icon."""
         return QIcon(ICON)
 
-    def svgIconPath(self):
+    def svgIconPath(self) -> str:
         """Return the file of the provider's icon."""
         return ICON
 
-    def about(self):
+    def about(self) -> str:
         """Return what the algorithm does, in a few sentences of HTML."""
         raise AssertionError(f"{self.name()} says nothing about itself")
 
-    def shortHelpString(self):
+    def shortHelpString(self) -> str:
         """Return the help: what the algorithm does, then what each parameter and output is."""
         lines = [f"<p>{self.about()}</p>"]
         helped = [p for p in self.parameterDefinitions() if p.help()]
         if helped:
-            lines.append(f"<h3>{self.tr('Parameters')}</h3>")
+            lines.append(f"<h3>{tr('Parameters')}</h3>")
         lines += [f"<p><b>{html.escape(p.description())}</b><br>{p.help()}</p>" for p in helped]
-        numbers = [
+        figures = [
             o for o in self.outputDefinitions() if o.type() in ("outputNumber", "outputString")
         ]
-        if numbers:
-            lines.append(f"<h3>{self.tr('Also returned')}</h3><ul>")
-            lines += [f"<li>{html.escape(o.description())} ({o.name()})</li>" for o in numbers]
+        if figures:
+            lines.append(f"<h3>{tr('Also returned')}</h3><ul>")
+            lines += [f"<li>{html.escape(o.description())} ({o.name()})</li>" for o in figures]
             lines.append("</ul>")
         return "\n".join(lines)
 
-    def add(self, parameter, help_text, advanced=False):
-        """Declare ``parameter`` with its help; ``advanced`` ones are folded away in the dialog."""
+    def initAlgorithm(self, configuration: Values | None = None) -> None:
+        """Declare parameters and outputs."""
+        self.declare()
+
+    def declare(self) -> None:
+        """Declare parameters and outputs; a subclass says which."""
+        raise AssertionError(f"{self.name()} has no parameters")
+
+    def add(
+        self,
+        parameter: QgsProcessingParameterDefinition,
+        help_text: str,
+        advanced: bool = False,
+    ) -> None:
+        """Declare a parameter with its help; ``advanced`` ones are folded away in the dialog."""
         parameter.setHelp(help_text)
         if advanced:
             parameter.setFlags(parameter.flags() | ADVANCED)
         self.addParameter(parameter)
 
-    def canExecute(self):
+    def canExecute(self) -> tuple[bool, str]:
         """Return True always; what is missing is told, with the remedy, when it is run."""
         return True, ""
 
-    def packages(self, parameters, context):
-        """Return what these parameters need beyond numpy and scipy."""
+    def checkParameterValues(
+        self, parameters: Values, context: QgsProcessingContext
+    ) -> tuple[bool, str]:
+        """Refuse, before anything is started, what cannot be meant."""
+        missing = dependencies.refusal()
+        if missing:
+            return False, missing
+        is_fine, message = super().checkParameterValues(parameters, context)
+        if not is_fine:
+            return False, message or ""
+        refusal = self.refusal(Request(self, parameters, context))
+        return refusal is None, refusal or ""
+
+    def refusal(self, request: Request) -> str | None:
+        """Return why these parameters cannot be meant, or None where they can."""
+        return None
+
+    def packages(self, request: Request) -> Iterable[dependencies.Package]:
+        """Return what these parameters need beyond NumPy and SciPy."""
         return self.PACKAGES
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self,
+        parameters: Values,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback | None,
+    ) -> bool:
         """Refuse where a package is missing, then take what needs the layers' own thread."""
-        refusal = dependencies.refusal(self.packages(parameters, context))
-        if refusal:
-            raise QgsProcessingException(refusal)
+        request = Request(self, parameters, context, feedback)
+        missing = dependencies.refusal(tuple(self.packages(request)))
+        if missing:
+            raise QgsProcessingException(missing)
         install_finder()
         from wavelet_core.errors import WaveletError
 
@@ -110,39 +154,54 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
             check_outputs(self, parameters, context)
         except WaveletError as error:
             raise QgsProcessingException(self.in_words(error)) from error
-        self.prepare(parameters, context, feedback)
+        self.take_layers(request)
         return True
 
-    def in_words(self, message):
-        """Return a message of the shared layers in the words of this algorithm's dialog."""
-        return for_dialog(message, has_crs=self.parameterDefinition("CRS") is not None)
+    def in_words(self, message: Any) -> str:
+        """Return an error, a warning or a note in the words of this algorithm's dialog."""
+        return in_words(message, labels_of(self))
 
-    def prepare(self, parameters, context, feedback):
+    def take_layers(self, request: Request) -> None:
         """Take from layers, in their own thread, what `work` needs of them."""
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self,
+        parameters: Values,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback | None,
+    ) -> Values:
         """Run, with every error of ours as a message in the log rather than a traceback."""
+        request = Request(self, parameters, context, feedback)
         slow = dependencies.slow_without_numba()
         if slow:
-            feedback.pushWarning(slow)
+            request.feedback.pushWarning(slow)
         from wavelet_core.errors import Cancelled, WaveletError
+        from wavelet_gis.notes import collected
 
         try:
-            with shown_in(feedback, self.in_words):
-                return self.work(parameters, context, feedback)
+            with shown_in(request.feedback, self.in_words), collected() as notes:
+                results = self.work(request)
         except Cancelled:
-            feedback.pushInfo(self.tr("Cancelled; nothing was written."))
+            request.say(tr("Cancelled; nothing was written."))
             return {}
         except WaveletError as error:
             raise QgsProcessingException(self.in_words(error)) from error
         except MemoryError as error:
             raise QgsProcessingException(
-                self.tr(
+                tr(
                     "There is not enough memory for this input (some 700 bytes a vertex are "
                     "needed). Cut it, or take a coarser one."
                 )
             ) from error
+        self._log_notes(request, notes)
+        return results
 
-    def work(self, parameters, context, feedback):
+    def work(self, request: Request) -> Values:
         """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""
         raise AssertionError(f"{self.name()} does nothing")
+
+    def _log_notes(self, request: Request, notes: list[Note]) -> None:
+        """Write what was noted on the way to the log; warnings are there already."""
+        for note in notes:
+            if not note.is_warning:
+                request.say(self.in_words(note))

@@ -8,9 +8,11 @@ QGIS; a finder for just these two names does not.
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from importlib.abc import MetaPathFinder
-from importlib.machinery import PathFinder
+from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
+from types import ModuleType
 
 PLUGIN_FOLDER = Path(__file__).resolve().parent.parent
 ICON = str(PLUGIN_FOLDER / "plugin" / "icons" / "terrain_wavelets.svg")
@@ -20,7 +22,12 @@ OWN_PACKAGES = ("wavelet_core", "wavelet_gis")
 class OwnPackageFinder(MetaPathFinder):
     """Finds the packages that come with this plugin, and nothing else."""
 
-    def find_spec(self, fullname, path=None, target=None):
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: ModuleType | None = None,
+    ) -> ModuleSpec | None:
         """Return the spec of one of our packages; submodules are then found through it."""
         if fullname not in OWN_PACKAGES:
             return None

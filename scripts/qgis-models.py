@@ -100,6 +100,15 @@ def input_(name):
     return QgsProcessingModelChildParameterSource.fromModelParameter(name)
 
 
+def given_or(name, default):
+    """Take a parameter's value from an input of the model, or its default where it is left out.
+
+    QGIS hands on None for what a caller leaves out, whatever default the model shows.
+    """
+    literal = repr(default) if not isinstance(default, str) else f"'{default}'"
+    return QgsProcessingModelChildParameterSource.fromExpression(f"coalesce(@{name}, {literal})")
+
+
 def result(child_id, output):
     """Take a parameter's value from the output of an earlier step."""
     return QgsProcessingModelChildParameterSource.fromChildOutput(child_id, output)
@@ -117,23 +126,21 @@ def dem_to_coarse_tin_and_details():
         "Analyses a DEM and shows both halves of its pyramid: the coarse TIN, and the details that "
         "were lifted off it, coloured by level. The pyramid itself can be kept for later.",
     )
-    model.input(QgsProcessingParameterRasterLayer("dem", "DEM"), "Raster of elevations.")
+    model.input(QgsProcessingParameterRasterLayer("INPUT", "DEM"), "Raster of elevations.")
     model.input(
-        optional_number("levels", "Most levels", INTEGER, 8, 1),
-        "Each level removes about a quarter of the vertices.",
+        optional_number("LEVELS", "Most levels", INTEGER, 8, 1),
+        "Each level removes up to a quarter of the vertices.",
     )
     model.input(
-        QgsProcessingParameterNumber(
-            "min_magnitude", "Smallest detail shown", DOUBLE, 0.0, False, 0
-        ),
+        optional_number("MIN_MAGNITUDE", "Smallest detail shown", DOUBLE, 0.0),
         "Details that are shorter, in the unit of elevation, are left out of the layer.",
     )
     model.step(
         "analyse",
         "terrainwavelets:analysedem",
         "Analyse the DEM",
-        INPUT=input_("dem"),
-        LEVELS=input_("levels"),
+        INPUT=input_("INPUT"),
+        LEVELS=given_or("LEVELS", 8),
         outputs={
             "OUTPUT": ("Pyramid", "GeoPackage from which every level is rebuilt."),
             "COARSE_TIN": ("Coarse TIN", "Triangles of the coarsest level."),
@@ -144,10 +151,10 @@ def dem_to_coarse_tin_and_details():
         "terrainwavelets:detaillayers",
         "Show the details",
         INPUT=result("analyse", "OUTPUT"),
-        MIN_MAGNITUDE=input_("min_magnitude"),
+        MIN_MAGNITUDE=given_or("MIN_MAGNITUDE", 0.0),
         outputs={"OUTPUT": ("Details by level", "Removed vertices, sized by magnitude.")},
     )
-    model.write("dem_to_coarse_tin_and_details.model3")
+    model.write("dem_to_coarse_tin.model3")
 
 
 def dem_and_breaklines_to_mesh():
@@ -159,30 +166,33 @@ def dem_and_breaklines_to_mesh():
         "the mesh, however coarse it is.",
     )
     source_type = QgsProcessing.SourceType
-    model.input(QgsProcessingParameterRasterLayer("dem", "DEM"), "Raster of elevations.")
+    model.input(QgsProcessingParameterRasterLayer("INPUT", "DEM"), "Raster of elevations.")
     model.input(
         QgsProcessingParameterFeatureSource(
-            "breaklines", "Breaklines", [source_type.TypeVectorLine], optional=True
+            "BREAKLINES", "Breaklines", [source_type.TypeVectorLine], optional=True
         ),
-        "Lines that stay edges of the mesh; without Z they lie on the DEM.",
+        "Lines that stay edges of the mesh; without Z they are laid on the DEM, all along.",
     )
     model.input(
         QgsProcessingParameterFeatureSource(
-            "area", "Area of the model", [source_type.TypeVectorPolygon], optional=True
+            "CLIP", "Area of the model", [source_type.TypeVectorPolygon], optional=True
         ),
         "Polygon that the mesh is clipped to.",
     )
     model.input(
-        QgsProcessingParameterNumber(
-            "vertices", "Number of mesh vertices", INTEGER, 20000, False, 3
-        ),
-        "The mesh has exactly so many, if breaklines allow.",
+        optional_number("TARGET_VERTICES", "Number of mesh vertices", INTEGER, 20000, 3),
+        "The mesh has exactly this many, if the breaklines allow.",
+    )
+    model.input(
+        optional_number("LINE_TOLERANCE", "Tolerance along lines without Z", DOUBLE),
+        "How far such a line may be above or below the DEM, in the unit of elevation; empty for a "
+        "thousandth of the relief.",
     )
     model.step(
         "points",
         "native:pixelstopoints",
         "Cells to points",
-        INPUT_RASTER=input_("dem"),
+        INPUT_RASTER=input_("INPUT"),
         RASTER_BAND=1,
         FIELD_NAME="elevation",
     )
@@ -192,9 +202,10 @@ def dem_and_breaklines_to_mesh():
         "Triangulate and analyse",
         INPUT=result("points", "OUTPUT"),
         Z_FIELD="elevation",
-        BREAKLINES=input_("breaklines"),
-        CLIP=input_("area"),
-        TARGET_VERTICES=input_("vertices"),
+        BREAKLINES=input_("BREAKLINES"),
+        CLIP=input_("CLIP"),
+        TARGET_VERTICES=given_or("TARGET_VERTICES", 20000),
+        LINE_TOLERANCE=input_("LINE_TOLERANCE"),
     )
     model.step(
         "mesh",
@@ -207,49 +218,49 @@ def dem_and_breaklines_to_mesh():
             "TIN": ("Triangles of the mesh", "The same as polygons."),
         },
     )
-    model.write("dem_and_breaklines_to_hydraulic_mesh.model3")
+    model.write("dem_to_hydraulic_mesh.model3")
 
 
 def point_cloud_to_filtered_dem():
     """Point cloud to filtered DEM."""
     model = Model(
         "Point cloud to filtered DEM",
-        "Takes the ground points of a LAS or LAZ file, takes out the noise of the scanner while "
+        "Takes the ground points of a LAS or LAZ file, removes the noise of the scanner while "
         "banks and ridges stay, and gives a DEM of any cell size.",
     )
     model.input(
         QgsProcessingParameterFile(
-            "points", "Point cloud file", fileFilter="LAS and LAZ (*.las *.laz *.LAS *.LAZ)"
+            "INPUT", "Point cloud file", fileFilter="LAS and LAZ (*.las *.laz *.LAS *.LAZ)"
         ),
         "With classified ground, or see below.",
     )
     model.input(
-        QgsProcessingParameterString("classes", "Classes", "2", optional=True),
+        QgsProcessingParameterString("CLASSES", "Classes", "2", optional=True),
         "ASPRS classes of the points that make the ground; empty for all points.",
     )
     model.input(
-        optional_number("noise", "Standard deviation of the noise", DOUBLE),
+        optional_number("SIGMA_OF_NOISE", "Standard deviation of the noise", DOUBLE),
         "In the unit of elevation; empty to have it estimated.",
     )
     model.input(
-        optional_number("cell_size", "Cell size", DOUBLE),
+        optional_number("CELL_SIZE", "Cell size", DOUBLE),
         "Of the DEM, in the unit of the CRS; empty for the mean spacing of the points.",
     )
     model.step(
         "analyse",
         "terrainwavelets:analysepointcloud",
         "Analyse the points",
-        INPUT=input_("points"),
-        CLASSES=input_("classes"),
+        INPUT=input_("INPUT"),
+        CLASSES=given_or("CLASSES", "2"),
         LEVELS=8,
     )
     model.step(
         "filter",
         "terrainwavelets:filterlevels",
-        "Take out the noise",
+        "Remove the noise",
         INPUT=result("analyse", "OUTPUT"),
         DENOISE=True,
-        SIGMA_OF_NOISE=input_("noise"),
+        SIGMA_OF_NOISE=input_("SIGMA_OF_NOISE"),
         outputs={"OUTPUT": ("Filtered pyramid!", "GeoPackage from which every level is rebuilt.")},
     )
     model.step(
@@ -258,38 +269,38 @@ def point_cloud_to_filtered_dem():
         "Make the DEM",
         INPUT=result("filter", "OUTPUT"),
         LEVEL=result("analyse", "N_LEVELS"),
-        CELL_SIZE=input_("cell_size"),
+        CELL_SIZE=input_("CELL_SIZE"),
         outputs={"RASTER": ("Filtered DEM!", "Elevations without the noise.")},
     )
-    model.write("point_cloud_to_filtered_dem.model3")
+    model.write("point_cloud_to_dem.model3")
 
 
 def dem_to_denoised_dem_and_report():
     """DEM to denoised DEM, difference and report."""
     model = Model(
         "DEM to denoised DEM and report",
-        "Takes out the noise of a DEM while banks and ridges stay, and shows what was taken: the "
+        "Removes the noise of a DEM while banks and ridges stay, and shows what was taken: the "
         "difference as a raster, and a report on the quality of every level.",
     )
-    model.input(QgsProcessingParameterRasterLayer("dem", "DEM"), "Raster of elevations.")
+    model.input(QgsProcessingParameterRasterLayer("INPUT", "DEM"), "Raster of elevations.")
     model.input(
-        optional_number("noise", "Standard deviation of the noise", DOUBLE),
+        optional_number("SIGMA_OF_NOISE", "Standard deviation of the noise", DOUBLE),
         "In the unit of elevation; empty to have it estimated.",
     )
     model.step(
         "analyse",
         "terrainwavelets:analysedem",
         "Analyse the DEM",
-        INPUT=input_("dem"),
+        INPUT=input_("INPUT"),
         LEVELS=8,
     )
     model.step(
         "filter",
         "terrainwavelets:filterlevels",
-        "Take out the noise",
+        "Remove the noise",
         INPUT=result("analyse", "OUTPUT"),
         DENOISE=True,
-        SIGMA_OF_NOISE=input_("noise"),
+        SIGMA_OF_NOISE=input_("SIGMA_OF_NOISE"),
         outputs={
             "DEM": ("Denoised DEM!", "Elevations without the noise."),
             "DIFFERENCE": ("Difference", "Denoised minus original elevation."),
@@ -302,7 +313,7 @@ def dem_to_denoised_dem_and_report():
         INPUT=result("filter", "OUTPUT"),
         outputs={"OUTPUT": ("Quality report", "HTML page on the denoised pyramid.")},
     )
-    model.write("dem_to_denoised_dem_and_report.model3")
+    model.write("dem_to_denoised_dem.model3")
 
 
 def main():

@@ -1,5 +1,6 @@
 """Write plugin/i18n/terrain_wavelets.ts, the template of translations, from the plugin's source.
 
+What dialogs show of the tables of ``wavelet_core`` and ``wavelet_gis`` is in it too.
 To translate into German, say: copy the template to terrain_wavelets_de.ts, fill it with Qt Linguist
 and compile it with ``lrelease`` to terrain_wavelets_de.qm beside it; the plugin loads it by itself.
 (Qt's own tools would put each class into a context of its own; here there is one for all.)
@@ -8,6 +9,7 @@ and compile it with ``lrelease`` to terrain_wavelets_de.qm beside it; the plugin
 from __future__ import annotations
 
 import ast
+import sys
 from pathlib import Path
 from xml.sax.saxutils import escape
 
@@ -35,9 +37,20 @@ def strings_of(source: str, name: str) -> list[str]:
         argument = node.args[0]
         if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
             found.append(argument.value)
-        elif not isinstance(argument, ast.Name):  # the method that hands its argument on
+        elif not isinstance(argument, ast.Attribute):  # of a row of a table, see table_strings
             raise ValueError(f"{name}:{node.lineno} hands tr() a text that is no literal")
     return found
+
+
+def table_strings() -> dict[str, list[str]]:
+    """Return the texts of the rows that dialogs show, by the table they are in."""
+    sys.path.insert(0, str(ROOT))
+    import wavelet_core
+    from wavelet_gis.io.formats import MESH_FORMATS
+
+    names = ("PARTITIONS", "NORMS", "PREDICTIONS", "UPDATES", "SIGNALS")
+    found = {name: [row.help for row in getattr(wavelet_core, name).values()] for name in names}
+    return {**found, "MESH_FORMATS": [row.used_by for row in MESH_FORMATS]}
 
 
 def all_strings() -> dict[str, list[str]]:
@@ -51,6 +64,9 @@ def all_strings() -> dict[str, list[str]]:
         ]
         seen.update(texts)
         by_module[name] = sorted(texts)
+    for name, texts in table_strings().items():
+        by_module[name] = sorted({text for text in texts if text not in seen})
+        seen.update(texts)
     return by_module
 
 

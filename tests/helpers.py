@@ -3,12 +3,28 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-PREDICTIONS = ("uniform", "cotangent", "geometric", "nnls", "least_squares")
-#: Beyond the paper; on a TIN only, as they look at the ring in plan.
-PLAN_PREDICTIONS = ("barycentric", "plane")
+import wavelet_core
+from wavelet_core.lifting.options import refused_pair
+
+#: Every filter of the tables, so that a new row is tested as the others are.
+PREDICTIONS = tuple(row.name for row in wavelet_core.PREDICTIONS.values() if not row.in_plan)
+#: On a TIN only, as they look at the ring in plan.
+PLAN_PREDICTIONS = tuple(row.name for row in wavelet_core.PREDICTIONS.values() if row.in_plan)
 ALL_PREDICTIONS = (*PREDICTIONS, *PLAN_PREDICTIONS)
-UPDATES = ("martinez_ortega", "one_ring_mean", "minimum_norm", "none")
+UPDATES = tuple(wavelet_core.UPDATES)
+PARTITIONS = tuple(wavelet_core.PARTITIONS)
+#: Pairs that `analyse` takes; the others are refused, which tests/core/lifting/test_options.py
+#: shows.
+PAIRS = tuple(
+    (prediction, update)
+    for prediction in ALL_PREDICTIONS
+    for update in UPDATES
+    if not refused_pair(prediction, update)
+)
+#: Lets the paper's unstable baseline, least squares with Martinez-Ortega, pass like the others.
+UNSTABLE_TOO = pytest.mark.filterwarnings("ignore::wavelet_core.errors.UnstableDesignWarning")
 
 
 def columns_of(mesh, channels):
@@ -150,7 +166,7 @@ def assert_close(actual, expected, size, what):
 def assert_integral_is_constant(pyramid, relative=1e-12):
     """Assert that the sum of integral times coefficient is the same on every level."""
     sums, sizes = [], []
-    for level, mesh in pyramid.meshes():
+    for level, mesh in enumerate(pyramid):
         zeta = pyramid.integrals(level)[:, None]
         s = columns_of(mesh, pyramid.channels)
         sums.append((zeta * s).sum(axis=0))
@@ -162,8 +178,8 @@ def assert_integral_is_constant(pyramid, relative=1e-12):
 
 def largest_coefficient(pyramid):
     """Return the largest absolute value among the coefficients and details of all levels."""
-    columns = [mesh.vertices for _, mesh in pyramid.meshes()]
-    columns += [mesh.attributes for _, mesh in pyramid.meshes()]
+    columns = [mesh.vertices for mesh in pyramid]
+    columns += [mesh.attributes for mesh in pyramid]
     columns += [step.details for step in pyramid.steps]
     return max(np.abs(values).max(initial=0) for values in columns)
 
@@ -171,7 +187,7 @@ def largest_coefficient(pyramid):
 def assert_pyramid_is_consistent(pyramid, mesh):
     """Assert perfect reconstruction of ``mesh`` and every step's rules, in one synthesis pass."""
     unbounded = pyramid.parameters.get("prediction") == "least_squares"
-    fine_to_coarse = dict(pyramid.meshes())
+    fine_to_coarse = dict(enumerate(pyramid))
     assert sorted(fine_to_coarse) == list(range(pyramid.n_levels + 1))
     finest = fine_to_coarse[pyramid.n_levels]
     assert_same_mesh(finest, mesh, largest=largest_coefficient(pyramid) if unbounded else None)

@@ -1,4 +1,4 @@
-"""Imports point one way, plugin -> wavelet_gis -> wavelet_core, and no layer imports too much."""
+"""Imports run one way: between the layers, between the rooms of a layer, and in no circle."""
 
 import ast
 import sys
@@ -15,6 +15,54 @@ ALLOWED_ARROWS = {
     "wavelet_gis": {"wavelet_gis", "wavelet_core"},
     "plugin": {"plugin", "wavelet_gis", "wavelet_core"},
 }
+#: The rooms of each layer, from the ground up: a room imports itself and those before it.
+ROOMS = {
+    "wavelet_core": (
+        "errors",
+        "progress",
+        "_table",
+        "_validate",
+        "_kernels",
+        "mesh",
+        "partition",
+        "lifting",
+        "filtering",
+        "features",
+        "accuracy",
+        "synthetic",
+        "metrics",
+    ),
+    "wavelet_gis": (
+        "errors",
+        "_fields",
+        "_program",
+        "progress",
+        "notes",
+        "crs",
+        "model",
+        "products",
+        "io",
+        "workflows",
+        "report",
+        "cli",
+    ),
+    "plugin": (
+        "packages",
+        "ui",
+        "qgis_io",
+        "parameters",
+        "base",
+        "algorithms",
+        "provider",
+        "plugin",
+    ),
+}
+#: Methods that hand their object over to a later room, imported when they are called: the only
+#: imports that may run back up, and only from inside a function.
+DOORS = {
+    ("wavelet_core.lifting.pyramid", "wavelet_core.filtering.thresholds"),  # Pyramid.denoised
+    ("wavelet_core.lifting.pyramid", "wavelet_core.accuracy.level_errors"),  # Pyramid.errors
+}
 #: Which other packages may be imported anywhere, and which inside a function only.
 ALLOWED_IN_CORE = {"numpy", "scipy", "numba"}
 ALLOWED_LAZILY_IN_CORE = {"pythoncdt"}
@@ -25,29 +73,40 @@ REFUSED_IN_PLUGIN = {"rasterio", "pyogrio", "fiona", "geopandas"}
 
 @dataclass(frozen=True)
 class Import:
-    """One imported top-level package, and where it is imported."""
+    """One imported module or name, dotted from the top, and where it is imported."""
 
-    package: str
+    target: str
     line: int
     is_lazy: bool
 
+    @property
+    def package(self) -> str:
+        """The top-level package."""
+        return self.target.split(".")[0]
 
-def imports_of(source: str, module: str) -> list[Import]:
-    """Return every import in ``source``, the text of the dotted ``module``."""
+
+def imports_of(source: str, module: str, *, is_package: bool = False) -> list[Import]:
+    """Return every import in ``source``, the text of the dotted ``module``.
+
+    ``from a import b`` is found as ``a.b``, which may be a module or a name in ``a``. What only a
+    type checker imports is left out.
+    """
     found = []
+    parents = module.split(".") if is_package else module.split(".")[:-1]
 
     def visit(node: ast.AST, is_lazy: bool) -> None:
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+            for child in node.orelse:
+                visit(child, is_lazy)
+            return
         if isinstance(node, ast.Import):
-            found.extend(Import(a.name.split(".")[0], node.lineno, is_lazy) for a in node.names)
+            found.extend(Import(alias.name, node.lineno, is_lazy) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            if node.level == 0:
-                found.append(Import((node.module or "").split(".")[0], node.lineno, is_lazy))
-            else:
-                parent = module.split(".")[: -node.level]
-                names = [node.module] if node.module else [a.name for a in node.names]
-                found.extend(
-                    Import([*parent, *name.split(".")][0], node.lineno, is_lazy) for name in names
-                )
+            start = parents[: len(parents) + 1 - node.level] if node.level else []
+            start = [*start, *(node.module.split(".") if node.module else [])]
+            found.extend(
+                Import(".".join([*start, alias.name]), node.lineno, is_lazy) for alias in node.names
+            )
         inside_function = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
         for child in ast.iter_child_nodes(node):
             visit(child, is_lazy or inside_function)
@@ -56,11 +115,16 @@ def imports_of(source: str, module: str) -> list[Import]:
     return found
 
 
-def faults_of(source: str, module: str) -> list[str]:
-    """Return one line for each import in ``source`` that its layer may not have."""
+def room_of(dotted: str) -> str:
+    """Return the folder or module of a layer that holds the dotted name; "" for its own door."""
+    return [*dotted.split("."), ""][1]
+
+
+def faults_of(source: str, module: str, *, is_package: bool = False) -> list[str]:
+    """Return one line for each import in ``source`` that its layer or its room may not have."""
     layer = module.split(".")[0]
     faults = []
-    for imported in imports_of(source, module):
+    for imported in imports_of(source, module, is_package=is_package):
         package = imported.package
         if package in ALLOWED_ARROWS:
             is_allowed = package in ALLOWED_ARROWS[layer]
@@ -74,32 +138,119 @@ def faults_of(source: str, module: str) -> list[str]:
             is_allowed = package not in QGIS_PACKAGES
         else:
             is_allowed = package not in REFUSED_IN_PLUGIN
+        if package == layer:
+            is_allowed = is_allowed and not runs_back_up(module, imported)
         if not is_allowed:
-            faults.append(f"{module}:{imported.line} imports {package}")
+            faults.append(f"{module}:{imported.line} imports {imported.target}")
     return faults
 
 
-def our_modules() -> list[tuple[str, Path]]:
-    """Return the dotted name and the path of every module of the three layers."""
-    modules = []
+def runs_back_up(module: str, imported: Import) -> bool:
+    """Tell whether an import inside a layer leads to a room above its own."""
+    own, theirs = room_of(module), room_of(imported.target)
+    order = ROOMS[module.split(".")[0]]
+    if own == "" or theirs == own or theirs not in order:  # the layer's own door, or a name in it
+        return False
+    is_door = imported.is_lazy and any(
+        module == source and f"{imported.target}.".startswith(f"{target}.")
+        for source, target in DOORS
+    )
+    return order.index(theirs) > order.index(own) and not is_door
+
+
+def our_modules() -> dict[str, Path]:
+    """Return the path of every module of the three layers by its dotted name."""
+    modules = {}
     for layer in ALLOWED_ARROWS:
         for path in sorted((ROOT / layer).rglob("*.py")):
             parts = path.relative_to(ROOT).with_suffix("").parts
-            modules.append((".".join(parts), path))
+            modules[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
     return modules
+
+
+def edges_of(sources: dict[str, str]) -> dict[str, set[str]]:
+    """Return, by module, the other modules that it imports; the doors are left out."""
+    edges: dict[str, set[str]] = {}
+    for name, source in sources.items():
+        is_package = any(other.startswith(f"{name}.") for other in sources)
+        edges[name] = set()
+        for imported in imports_of(source, name, is_package=is_package):
+            target = imported.target  # a module, or else a name in one
+            if target not in sources:
+                target = target.rpartition(".")[0]
+            if target in sources and target != name and (name, target) not in DOORS:
+                edges[name].add(target)
+    return edges
+
+
+def circles_in(edges: dict[str, set[str]]) -> list[list[str]]:
+    """Return the circles that a walk along the imports meets."""
+    circles, done = [], set()
+
+    def walk(name: str, path: list[str]) -> None:
+        if name in path:
+            circles.append([*path[path.index(name) :], name])
+        elif name not in done:
+            for target in sorted(edges[name]):
+                walk(target, [*path, name])
+            done.add(name)
+
+    for name in sorted(edges):
+        walk(name, [])
+    return circles
 
 
 def test_imports_point_one_way():
     modules = our_modules()
     assert modules, f"no module found under {ROOT}"
-    faults = [fault for name, path in modules for fault in faults_of(path.read_text("utf-8"), name)]
+    faults = [
+        fault
+        for name, path in modules.items()
+        for fault in faults_of(path.read_text("utf-8"), name, is_package=path.name == "__init__.py")
+    ]
     assert not faults, "\n".join(faults)
+
+
+def test_no_module_is_in_a_circle():
+    sources = {name: path.read_text("utf-8") for name, path in our_modules().items()}
+    circles = circles_in(edges_of(sources))
+    assert not circles, "\n".join(" -> ".join(circle) for circle in circles)
+
+
+def test_a_circle_is_seen():
+    sources = {
+        "wavelet_core.mesh": "",
+        "wavelet_core.mesh.a": "from .b import x",
+        "wavelet_core.mesh.b": "def f():\n    from . import c",
+        "wavelet_core.mesh.c": "from wavelet_core.mesh import a",
+    }
+    assert circles_in(edges_of(sources)) == [
+        ["wavelet_core.mesh.a", "wavelet_core.mesh.b", "wavelet_core.mesh.c", "wavelet_core.mesh.a"]
+    ]
+
+
+def test_every_room_has_its_place_in_the_order():
+    for layer, order in ROOMS.items():
+        rooms = {room_of(name) for name in our_modules() if name.split(".")[0] == layer} - {""}
+        assert rooms <= set(order), f"{layer}: {sorted(rooms - set(order))}"
+
+
+#: Folders that hold one file for each row of a table, however many there are.
+OF_TABLES = {"plugin/algorithms", "wavelet_gis/cli/commands", "wavelet_core/_kernels"}
+
+
+def test_no_room_is_crowded():
+    for layer in ALLOWED_ARROWS:
+        for folder in {path.parent for path in (ROOT / layer).rglob("*.py")}:
+            name = folder.relative_to(ROOT).as_posix()
+            files = [path for path in folder.glob("*.py") if path.name != "__init__.py"]
+            assert name in OF_TABLES or len(files) <= 12, f"{name} holds {len(files)} modules"
 
 
 def test_numba_is_imported_behind_the_shim_only():
     offenders = [
         name
-        for name, path in our_modules()
+        for name, path in our_modules().items()
         if name != "wavelet_core._kernels._jit"
         and any(found.package == "numba" for found in imports_of(path.read_text("utf-8"), name))
     ]
@@ -116,32 +267,41 @@ def test_the_root_holds_the_class_factory_and_nothing_else():
 @pytest.mark.parametrize(
     ("module", "source", "is_fault"),
     [
-        ("wavelet_core.mesh.triangle_mesh", "import wavelet_gis", True),
-        ("wavelet_core.mesh.triangle_mesh", "from wavelet_gis.crs.frame import to_metres", True),
-        ("wavelet_core.mesh.triangle_mesh", "def f():\n    import plugin", True),
-        ("wavelet_core.mesh.triangle_mesh", "import rasterio", True),
-        ("wavelet_core.mesh.triangle_mesh", "import pythoncdt", True),
-        ("wavelet_core.mesh.triangle_mesh", "def f():\n    import pythoncdt", False),
+        ("wavelet_core.errors", "import wavelet_gis", True),
+        ("wavelet_core.errors", "from wavelet_gis.crs import to_metres", True),
+        ("wavelet_core.errors", "def f():\n    import plugin", True),
+        ("wavelet_core.errors", "import rasterio", True),
+        ("wavelet_core.errors", "import pythoncdt", True),
+        ("wavelet_core.errors", "def f():\n    import pythoncdt", False),
+        ("wavelet_core.errors", "import numpy.linalg, scipy.sparse as sparse, json", False),
+        ("wavelet_core._kernels.update", "from ..errors import MeshError", False),
+        ("wavelet_core.mesh.quadric", "from .. import errors", False),
+        ("wavelet_core.mesh.quadric", "from ... import wavelet_gis", True),
+        ("wavelet_core.errors", "try:\n    import matplotlib\nexcept ImportError:\n    pass", True),
+        ("wavelet_core.mesh.quadric", "from ..lifting.pyramid import Pyramid", True),
+        ("wavelet_core.mesh.quadric", "def f():\n    from ..lifting import pyramid", True),
+        ("wavelet_core.lifting.pyramid", "from ..mesh.quadric import build_quadrics", False),
+        ("wavelet_core.lifting.pyramid", "from ..filtering.thresholds import denoised", True),
         (
-            "wavelet_core.mesh.triangle_mesh",
-            "import numpy.linalg, scipy.sparse as sparse, json",
+            "wavelet_core.lifting.pyramid",
+            "def f():\n    from ..filtering.thresholds import denoised",
             False,
         ),
-        ("wavelet_core._kernels.mesh", "from ..errors import MeshError", False),
-        ("wavelet_core.mesh.triangle_mesh", "from . import errors", False),
-        ("wavelet_core.mesh.triangle_mesh", "from ... import wavelet_gis", True),
         (
-            "wavelet_core.mesh.triangle_mesh",
-            "try:\n    import matplotlib\nexcept ImportError:\n    pass",
-            True,
+            "wavelet_core.mesh.quadric",
+            "if TYPE_CHECKING:\n    from ..lifting.pyramid import Pyramid",
+            False,
         ),
         ("wavelet_gis.cli.main", "from wavelet_core import analyse\nimport rasterio", False),
-        ("wavelet_gis.cli.main", "from plugin import bridge", True),
+        ("wavelet_gis.cli.main", "from plugin import base", True),
         ("wavelet_gis.cli.main", "def f():\n    from osgeo import gdal", True),
         ("wavelet_gis.cli.main", "from qgis.core import QgsRasterLayer", True),
-        ("plugin.bridge", "from qgis.core import Qgis\nfrom wavelet_gis import crs", False),
-        ("plugin.bridge", "def f():\n    import rasterio", True),
-        ("plugin.algorithms.analyse", "from ...wavelet_core import analyse", False),
+        ("wavelet_gis.io.atomic", "from wavelet_gis.cli.console import Console", True),
+        ("wavelet_gis.workflows.open", "from wavelet_gis.io.raster import read_dem", False),
+        ("plugin.base", "from qgis.core import Qgis\nfrom wavelet_gis import crs", False),
+        ("plugin.base", "def f():\n    import rasterio", True),
+        ("plugin.base", "def f():\n    from .provider import ICON", True),
+        ("plugin.algorithms.analyse_dem", "from ...wavelet_core import analyse", False),
     ],
 )
 def test_a_wrong_arrow_is_seen(module, source, is_fault):

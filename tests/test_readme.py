@@ -23,6 +23,14 @@ def test_python_blocks_run(block, tmp_path, monkeypatch):
     exec(compile(block, "README.md", "exec"), {})
 
 
+@pytest.mark.parametrize(("page", "n_blocks"), [("docs/filtering.md", 2), ("docs/details.md", 2)])
+def test_examples_that_go_on_from_one_another_run(page, n_blocks):
+    """docs/filtering.md imported what had moved; later blocks read files."""
+    names = {}
+    for block in blocks("python", page)[:n_blocks]:
+        exec(compile(block, page, "exec"), names)
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_there_is_a_python_block(page):
     assert blocks("python", page)

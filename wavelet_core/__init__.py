@@ -1,42 +1,101 @@
 """Reversible multiresolution pyramids of terrain TINs by graph-based wavelet lifting."""
 
 from . import metrics, synthetic
+from .accuracy.between_levels import PartialMesh, mesh_of_accuracy, mesh_of_size
+from .accuracy.fitted_heights import fitted
 from .errors import (
     Cancelled,
-    FilterError,
     MeshError,
     MissingDependencyError,
     OptionError,
     PyramidError,
     SlowFallbackWarning,
+    UnstableDesignWarning,
     WaveletError,
+    WaveletWarning,
+)
+from .features.shape import SHAPE_NAMES, DetailShape, SurfaceShape, detail_shape, surface_shape
+from .features.signature import (
+    Signature,
+    energy_signature,
+    joined_levels,
+    plain_features,
+    scale_features,
+)
+from .features.spectrum import (
+    STAYS,
+    Components,
+    VertexDetails,
+    band_components,
+    band_energies,
+    heights_above_lows,
+    vertex_details,
 )
 from .filtering.denoise import denoise
+from .filtering.gains import band_gains, relifted
+from .filtering.noise import channel_noise, estimate_noise
 from .lifting.analyse import analyse
+from .lifting.prediction import PREDICTIONS
 from .lifting.pyramid import Detail, Pyramid
+from .lifting.signal import SIGNALS
 from .lifting.spacings import level_spacings
 from .lifting.step import FilterPair, Step
+from .lifting.update import UPDATES
 from .mesh.triangle_mesh import TriangleMesh
+from .partition.registry import NORMS, PARTITIONS
+from .progress import Progress
 
 __all__ = [
+    "NORMS",
+    "PARTITIONS",
+    "PREDICTIONS",
+    "SHAPE_NAMES",
+    "SIGNALS",
+    "STAYS",
+    "UPDATES",
     "Cancelled",
+    "Components",
     "Detail",
-    "FilterError",
+    "DetailShape",
     "FilterPair",
     "MeshError",
     "MissingDependencyError",
     "OptionError",
+    "PartialMesh",
+    "Progress",
     "Pyramid",
     "PyramidError",
+    "Signature",
     "SlowFallbackWarning",
     "Step",
+    "SurfaceShape",
     "TriangleMesh",
+    "UnstableDesignWarning",
+    "VertexDetails",
     "WaveletError",
+    "WaveletWarning",
     "analyse",
+    "band_components",
+    "band_energies",
+    "band_gains",
+    "channel_noise",
     "denoise",
+    "detail_shape",
+    "energy_signature",
+    "estimate_noise",
+    "fitted",
+    "heights_above_lows",
+    "joined_levels",
     "level_spacings",
+    "mesh_of_accuracy",
+    "mesh_of_size",
     "metrics",
+    "plain_features",
+    "relifted",
+    "scale_features",
+    "surface_shape",
     "synthetic",
+    "vertex_details",
 ]
 
 __version__ = "0.1.0"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from .errors import MeshError
 
@@ -14,10 +16,53 @@ IntArray = NDArray[np.int64]
 
 
 def frozen(array: NDArray) -> NDArray:
-    """Return the array, C-contiguous and read-only; a view is never made writable again."""
+    """Return an array of our own, C-contiguous and read-only; a view is never writable again."""
     array = np.ascontiguousarray(array)
     array.flags.writeable = False
     return array
+
+
+def owned(array: ArrayLike, dtype: DTypeLike) -> NDArray:
+    """Return somebody else's array as a read-only one that nobody can change.
+
+    Theirs stays as writable as it was. It is copied, unless nothing that holds its memory is
+    writable.
+    """
+    given = np.asarray(array)
+    ours = np.ascontiguousarray(given, dtype=dtype)
+    if np.may_share_memory(ours, given) and _can_be_changed(ours):
+        ours = ours.copy()
+    return frozen(ours)
+
+
+def _can_be_changed(array: NDArray) -> bool:
+    """Whether an array, or one that it is a view of, is writable."""
+    holder: Any = array
+    while isinstance(holder, np.ndarray):
+        if holder.flags.writeable:
+            return True
+        holder = holder.base
+    return False
+
+
+def are_equal(one: Any, other: Any) -> bool:
+    """Return whether two dataclasses of one class have equal fields, arrays by their values."""
+    return all(
+        _is_equal(getattr(one, field.name), getattr(other, field.name))
+        for field in fields(one)
+        if field.compare
+    )
+
+
+def _is_equal(one: Any, other: Any) -> bool:
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other)
+    return type(one) is type(other) and bool(one == other)
+
+
+def counted(n: int, singular: str, plural: str | None = None) -> str:
+    """Return a number and what it counts, such as ``1,200 vertices``."""
+    return f"{n:,} {singular if n == 1 else plural or singular + 's'}"
 
 
 def as_vertices(vertices: ArrayLike) -> FloatArray:

@@ -1,5 +1,93 @@
-"""Files, CRS and units around the wavelet core: DEM and LAS in and out, the pyramid file, the CLI.
+"""Terrain in the world: DEM, point cloud and TIN files in and out, the pyramid file, the workflows.
 
-Nothing is imported here, so that a part needs no more than its own packages: all of `model` and
-`products`, and of `io` what QGIS uses, run on numpy, scipy and sqlite3 alone.
+>>> import wavelet_gis as wg
+>>> dem = wg.open("dem.tif")  # doctest: +SKIP
+>>> wg.save(wg.simplify(dem, vertices=5000), "coarse.ply")  # doctest: +SKIP
+>>> wg.save(wg.analyse(dem, levels=12), "dem.gpkg")  # doctest: +SKIP
+>>> wg.load("dem.gpkg").restore("same_dem.tif")  # doctest: +SKIP
+
+Names are imported when they are first used, so that a part needs no more than its own packages:
+all of `model`, `products` and `workflows`, and of `io` what QGIS uses, run on numpy, scipy and
+sqlite3 alone.
 """
+
+# What type checkers take for True; `typing` itself would delay the program's care for interrupts.
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from wavelet_gis.report.page import report_page
+    from wavelet_gis.workflows.analyse import Analysis, analyse
+    from wavelet_gis.workflows.cluster import Labelled, classify, cluster
+    from wavelet_gis.workflows.details import Details, details
+    from wavelet_gis.workflows.extract import Surface, extract
+    from wavelet_gis.workflows.filtering import Filtered
+    from wavelet_gis.workflows.filtering import filter_pyramid as filter
+    from wavelet_gis.workflows.labels import labels_from_las, labels_from_layer
+    from wavelet_gis.workflows.open import load
+    from wavelet_gis.workflows.open import open_data as open
+    from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
+    from wavelet_gis.workflows.save import save
+    from wavelet_gis.workflows.simplify import Simplified, simplify
+
+__all__ = [
+    "Analysis",
+    "Details",
+    "Filtered",
+    "Labelled",
+    "Reconstruction",
+    "Simplified",
+    "Surface",
+    "analyse",
+    "classify",
+    "cluster",
+    "details",
+    "extract",
+    "filter",
+    "labels_from_las",
+    "labels_from_layer",
+    "load",
+    "open",
+    "reconstruct",
+    "report_page",
+    "save",
+    "simplify",
+]
+
+#: Where each public name is, and what it is called there.
+_HOMES = {
+    "Analysis": "workflows.analyse:Analysis",
+    "Details": "workflows.details:Details",
+    "Filtered": "workflows.filtering:Filtered",
+    "Labelled": "workflows.cluster:Labelled",
+    "Reconstruction": "workflows.reconstruct:Reconstruction",
+    "Simplified": "workflows.simplify:Simplified",
+    "Surface": "workflows.extract:Surface",
+    "analyse": "workflows.analyse:analyse",
+    "classify": "workflows.cluster:classify",
+    "cluster": "workflows.cluster:cluster",
+    "details": "workflows.details:details",
+    "extract": "workflows.extract:extract",
+    "filter": "workflows.filtering:filter_pyramid",
+    "labels_from_las": "workflows.labels:labels_from_las",
+    "labels_from_layer": "workflows.labels:labels_from_layer",
+    "load": "workflows.open:load",
+    "open": "workflows.open:open_data",
+    "reconstruct": "workflows.reconstruct:reconstruct",
+    "report_page": "report.page:report_page",
+    "save": "workflows.save:save",
+    "simplify": "workflows.simplify:simplify",
+}
+
+
+def __getattr__(name: str) -> "Any":
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    module, attribute = _HOMES[name].split(":")
+    return getattr(import_module(f"{__name__}.{module}"), attribute)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

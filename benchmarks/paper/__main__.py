@@ -42,7 +42,7 @@ def main():
     warnings.simplefilter("ignore")  # of the input files; they are told elsewhere
     store = HERE / "results.json"
     results = json.loads(store.read_text()) if store.exists() else {}
-    pictures = DOCS / "images"
+    pictures = DOCS / "images" / "paper"
     pictures.mkdir(parents=True, exist_ok=True)
 
     def keep():

@@ -56,7 +56,7 @@ def run(data: Path, pictures: Path) -> dict[str, Any]:
     """Return counts and detail strengths of every step, and draw meshes and details."""
     figures: dict[str, Any] = {}
     for name, mesh in samples(data).items():
-        pyramid = analyse(mesh, STEPS, "quadric", "GLMN")
+        pyramid = analyse(mesh, levels=STEPS, partition="quadric", prediction="GLMN")
         relief = local_relief(mesh)
         rows = []
         for level in range(pyramid.n_levels - 1, -1, -1):
@@ -75,7 +75,7 @@ def run(data: Path, pictures: Path) -> dict[str, Any]:
             )
         figures[name] = {"n_vertices": mesh.n_vertices, "steps": rows}
         print(f"  {name}: {figures[name]}", flush=True)
-        draw(mesh, pyramid, pictures / f"paper-frequency-{name.split('_')[0]}.png")
+        draw(mesh, pyramid, pictures / f"frequency-{name.split('_')[0]}.png")
     return figures
 
 

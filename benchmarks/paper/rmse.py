@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from wavelet_core import Pyramid, analyse
-from wavelet_core.accuracy.level_errors import level_errors
 
 from .clouds import Sample
 
@@ -27,8 +26,10 @@ def run(sample: Sample, pictures: Path) -> dict[str, Any]:
     designs = {}
     for design in DESIGNS:
         begin = perf_counter()
-        pyramid = analyse(sample.mesh, LEVELS, "quadric", design, signal="xyz")
-        rows = level_errors(pyramid)
+        pyramid = analyse(
+            sample.mesh, levels=LEVELS, partition="quadric", prediction=design, signal="xyz"
+        )
+        rows = pyramid.errors()[::-1]
         designs[design] = {
             "n_vertices": [row.n_vertices for row in rows],
             "rmse_coefficients": [row.rmse_coefficients for row in rows],
@@ -43,9 +44,12 @@ def run(sample: Sample, pictures: Path) -> dict[str, Any]:
             f"{last.rmse_surface:.3f}, {seconds:.0f} s",
             flush=True,
         )
-    fixed = level_errors(analyse(sample.mesh, LEVELS, "quadric", "GLMN", signal="z"))
-    draw_errors(sample, designs, pictures / f"paper-rmse-{sample.name}.png")
-    draw_levels(sample, pictures / f"paper-levels-{sample.name}.png")
+    in_plan = analyse(
+        sample.mesh, levels=LEVELS, partition="quadric", prediction="GLMN", signal="z"
+    )
+    fixed = in_plan.errors()[::-1]
+    draw_errors(sample, designs, pictures / f"rmse-{sample.name}.png")
+    draw_levels(sample, pictures / f"levels-{sample.name}.png")
     return {
         "figure": sample.figure,
         "note": sample.note,
@@ -100,9 +104,9 @@ def draw_levels(sample: Sample, path: Path) -> None:
     """Draw the input and the surfaces after 12 and 24 steps of UGMN, coloured by z."""
     import matplotlib.pyplot as plt
 
-    pyramid = analyse(sample.mesh, 24, "quadric", "UGMN", signal="z")
+    pyramid = analyse(sample.mesh, levels=24, partition="quadric", prediction="UGMN", signal="z")
     wanted = {pyramid.n_levels, max(pyramid.n_levels - 12, 0), 0}
-    meshes = {level: mesh for level, mesh in pyramid.meshes() if level in wanted}
+    meshes = {level: mesh for level, mesh in enumerate(pyramid) if level in wanted}
     figure, axes = plt.subplots(1, 3, figsize=(10, 3.6), constrained_layout=True)
     for axis, level in zip(axes, sorted(wanted, reverse=True), strict=True):
         mesh = meshes[level]

@@ -49,7 +49,7 @@ def run(data: Path, pictures: Path, size: int = 900) -> dict[str, Any]:
     coarse = {}
     for design in ("GLMN", "UGMN"):
         for name, options in VARIANTS.items():
-            pyramid = analyse(mesh, STEPS, prediction=design, **options)
+            pyramid = analyse(mesh, levels=STEPS, prediction=design, **options)
             level = pyramid.mesh(0)
             error = surface_errors(level, mesh.vertices)
             figures[f"{design}, {name}"] = {
@@ -63,7 +63,7 @@ def run(data: Path, pictures: Path, size: int = 900) -> dict[str, Any]:
             if design == "GLMN":
                 coarse[name] = level
             print(f"  {design} {name}: {figures[f'{design}, {name}']}", flush=True)
-    draw(mesh, coarse, pictures / "paper-salience.png")
+    draw(mesh, coarse, pictures / "salience.png")
     return figures
 
 
@@ -102,7 +102,7 @@ def run_noise(data: Path, size: int = 400) -> list[dict[str, Any]]:
     relief = float(np.ptp(mesh.vertices[:, 2]))
     rows = []
     clean = {
-        name: removal_level(analyse(mesh, STEPS, prediction="GLMN", **options))
+        name: removal_level(analyse(mesh, levels=STEPS, prediction="GLMN", **options))
         for name, options in VARIANTS.items()
     }
     for share in (0.0, 0.0003, 0.001, 0.003, 0.01):
@@ -110,7 +110,7 @@ def run_noise(data: Path, size: int = 400) -> list[dict[str, Any]]:
         z = mesh.vertices[:, 2] + noise
         noisy = TriangleMesh(np.column_stack([mesh.vertices[:, :2], z]), mesh.faces)
         for name, options in VARIANTS.items():
-            pyramid = analyse(noisy, STEPS, prediction="GLMN", **options)
+            pyramid = analyse(noisy, levels=STEPS, prediction="GLMN", **options)
             survived = removal_level(pyramid)
             kept, kept_clean = survived == STEPS, clean[name] == STEPS
             rows.append(

@@ -3,47 +3,44 @@
 from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING
 
 from qgis.core import QgsProcessingParameterFile
 
 from ..base import TerrainWaveletsAlgorithm
+from ..parameters.request import Request
+from ..ui.translation import tr
+
+if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 
 class PyramidAlgorithm(TerrainWaveletsAlgorithm):
     """Base of the algorithms that read a pyramid file."""
 
-    def add_pyramid_parameter(self):
+    def add_pyramid_parameter(self) -> None:
         """Declare INPUT."""
         self.add(
             QgsProcessingParameterFile(
-                "INPUT",
-                self.tr("Pyramid"),
-                extension="gpkg",
-                fileFilter=self.tr("Pyramid (*.gpkg)"),
+                "INPUT", tr("Pyramid"), extension="gpkg", fileFilter=tr("Pyramid (*.gpkg)")
             ),
-            self.tr("GeoPackage that one of the analyses made."),
+            tr("GeoPackage that one of the analyses made."),
         )
 
-    def checkParameterValues(self, parameters, context):
+    def refusal(self, request: Request) -> str | None:
         """Refuse a file that is not there before anything is started."""
-        is_fine, message = super().checkParameterValues(parameters, context)
-        if not is_fine:
-            return is_fine, message
-        path = self.pyramid_path(parameters, context)
+        path = request.input_file("INPUT")
         if not os.path.isfile(path):
-            return False, self.tr("{}: there is no such file; choose a pyramid.").format(path)
-        return True, ""
+            return tr("{}: there is no such file; choose a pyramid.").format(path)
+        return None
 
-    def pyramid_path(self, parameters, context) -> str:
-        """Return the path of the pyramid file, without the name of a layer in it."""
-        return self.parameterAsString(parameters, "INPUT", context).split("|")[0]
+    def geo_pyramid(self, request: Request) -> GeoPyramid:
+        """Return the pyramid in the file."""
+        from wavelet_gis.workflows.open import load
 
-    def geo(self, parameters, context, feedback):
-        """Return the ``GeoPyramid`` in the file."""
-        from ..parameters.pyramid import load
-
-        feedback.setProgressText(self.tr("Reading the pyramid"))
-        geo = load(self.pyramid_path(parameters, context))
+        request.stage(tr("Reading the pyramid"))
+        # A layer of the file may have been handed on by a model: 'file.gpkg|layername=coarse_tin'.
+        geo = load(request.input_file("INPUT")).geo
         for line in geo.history:
-            feedback.pushInfo(self.tr("Changed since its analysis: {}").format(line))
+            request.say(tr("Changed since its analysis: {}").format(line))
         return geo

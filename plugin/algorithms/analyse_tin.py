@@ -2,252 +2,338 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from qgis.core import (
-    QgsProcessing,
-    QgsProcessingException,
+    QgsProcessingFeatureSource,
+    QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterField,
+    QgsProcessingParameterNumber,
     QgsWkbTypes,
 )
 
+from ..base import Values
 from ..parameters.analysis_options import (
     add_weights_parameter,
     vertical_unit,
     weight_options,
     weights_refusal,
 )
+from ..parameters.request import Request
 from ..ui import dependencies
+from ..ui.enums import (
+    ANY_FIELD,
+    LINES,
+    NUMERIC_FIELD,
+    POINTS,
+    POLYGON_GEOMETRY,
+    POLYGONS,
+    REAL_NUMBER,
+)
+from ..ui.exceptions import QgsProcessingException
+from ..ui.translation import tr
 from ._analysis import AnalysisAlgorithm
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from wavelet_gis.crs.frame import CoordinateSystem
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
+    from wavelet_gis.model.terrain import Terrain
+    from wavelet_gis.workflows.options import WaveletOptions
 
 
 class AnalyseTin(AnalysisAlgorithm):
     """Vector layer to pyramid."""
 
-    def name(self):
+    source: QgsProcessingFeatureSource
+    breaklines: QgsProcessingFeatureSource | None
+    clip: QgsProcessingFeatureSource | None
+    locked: NDArray[np.bool_] | None
+    #: Where the terrain is known along the lines, in the working frame.
+    profile: NDArray[np.float64] | None
+
+    def name(self) -> str:
         """Return the public id."""
         return "analysetin"
 
-    def displayName(self):
+    def displayName(self) -> str:
         """Return the name in the toolbox."""
-        return self.tr("Analyse points or TIN")
+        return tr("Analyse points or TIN")
 
-    def tags(self):
+    def shortDescription(self) -> str:
+        """Return what it does in one line."""
+        return tr("Points with breaklines, or triangles, to a reversible pyramid of TINs")
+
+    def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
-        return self.tr(
-            "tin,points,triangles,breaklines,survey,pyramid,wavelet,multiresolution"
+        return tr(
+            "tin,points,triangles,triangulate,delaunay,breaklines,survey,pyramid,wavelet,"
+            "multiresolution,analyze"
         ).split(",")
 
-    def about(self):
+    def about(self) -> str:
         """Return what it does."""
-        return self.tr(
+        return tr(
             "Turns a layer of points or of triangles into a reversible wavelet pyramid. Points are "
             "triangulated (Delaunay in plan), with breaklines as edges and clipped to a polygon if "
             "wanted. Locked points and the vertices of breaklines stay at every level, where they "
             "are and as high as they are."
         )
 
-    def initAlgorithm(self, configuration=None):
+    def declare(self) -> None:
         """Declare parameters and outputs."""
-        source_type = QgsProcessing.SourceType
         self.add(
             QgsProcessingParameterFeatureSource(
-                "INPUT",
-                self.tr("Points or triangles"),
-                [source_type.TypeVectorPoint, source_type.TypeVectorPolygon],
+                "INPUT", tr("Points or triangles"), [POINTS, POLYGONS]
             ),
-            self.tr(
+            tr(
                 "Points with Z or with a field of elevations, or polygons with Z that are all "
-                "triangles. Of points at the same x and y the lowest counts."
+                "triangles. Of points at the same x and y the lowest is taken."
             ),
         )
         self.add(
             QgsProcessingParameterField(
                 "Z_FIELD",
-                self.tr("Field with the elevation"),
+                tr("Field with the elevation"),
                 None,
                 "INPUT",
-                QgsProcessingParameterField.DataType.Numeric,
+                NUMERIC_FIELD,
                 optional=True,
             ),
-            self.tr("Of points; empty for the Z of the geometry."),
+            tr("Of points; empty for the Z of the geometry."),
         )
         self.add(
             QgsProcessingParameterField(
                 "ATTRIBUTES",
-                self.tr("Attributes"),
+                tr("Attributes"),
                 None,
                 "INPUT",
-                QgsProcessingParameterField.DataType.Numeric,
+                NUMERIC_FIELD,
                 allowMultiple=True,
                 optional=True,
             ),
-            self.tr("Numeric fields of points that are transformed along with the elevation."),
+            tr("Numeric fields of points that are transformed along with the elevation."),
         )
         add_weights_parameter(self)
         self.add(
             QgsProcessingParameterFeatureSource(
-                "BREAKLINES", self.tr("Breaklines"), [source_type.TypeVectorLine], optional=True
+                "BREAKLINES", tr("Breaklines"), [LINES], optional=True
             ),
-            self.tr(
-                "Become edges of the TIN. Where they have no Z, they lie on the TIN of the points; "
-                "where they cross, they are cut."
+            tr(
+                "Become edges of the TIN. Without Z they are laid on the TIN of the points, all "
+                "along; with Z they keep it. Where they cross, they are cut."
             ),
         )
         self.add(
             QgsProcessingParameterFeatureSource(
-                "CLIP", self.tr("Clip polygon"), [source_type.TypeVectorPolygon], optional=True
+                "CLIP", tr("Clip polygon"), [POLYGONS], optional=True
             ),
-            self.tr("Only the terrain inside; its outline becomes edges of the TIN."),
+            tr(
+                "Only the terrain inside; its outline becomes edges of the TIN and is laid on the "
+                "TIN of the points."
+            ),
         )
         self.add(
             QgsProcessingParameterField(
                 "LOCK_FIELD",
-                self.tr("Field that locks points"),
+                tr("Field that locks points"),
                 None,
                 "INPUT",
-                QgsProcessingParameterField.DataType.Any,
+                ANY_FIELD,
                 optional=True,
             ),
-            self.tr("Points where it holds anything but 0, false or NULL stay at every level."),
+            tr("Points whose value is anything but 0, false or NULL stay at every level."),
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterBoolean("LOCK_BREAKLINES", self.tr("Lock breaklines"), True),
-            self.tr("Keep the vertices of breaklines, and so the lines, at every level."),
+            QgsProcessingParameterBoolean(
+                "LOCK_BREAKLINES", tr("Lock breaklines and outline"), True
+            ),
+            tr(
+                "Keep the vertices of breaklines and of the outline, and so the lines, at every "
+                "level."
+            ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "LINE_TOLERANCE",
+                tr("Tolerance along lines without Z"),
+                REAL_NUMBER,
+                None,
+                optional=True,
+                minValue=0.0,
+            ),
+            tr(
+                "A line that is laid on the terrain keeps only as many vertices as it needs to be "
+                "nowhere farther above or below it, in the unit of elevation. Empty for the "
+                "largest error where that is a stop rule, else for a thousandth of the relief."
+            ),
             advanced=True,
         )
         self.add_analysis_parameters()
+        for name, description in (
+            ("RMSE_LINES", tr("RMSE along breaklines and outline, in the unit of elevation")),
+            (
+                "MAX_ERROR_LINES",
+                tr("Largest error along breaklines and outline, in the unit of elevation"),
+            ),
+        ):
+            self.addOutput(QgsProcessingOutputNumber(name, description))
 
-    def checkParameterValues(self, parameters, context):
+    def refusal(self, request: Request) -> str | None:
         """Refuse weights that are no numbers."""
-        is_fine, message = super().checkParameterValues(parameters, context)
-        refusal = weights_refusal(self, parameters, context) if is_fine else message
-        return refusal is None, refusal or ""
+        return weights_refusal(request)
 
-    def packages(self, parameters, context):
-        """Return the Delaunay library, where points are to be triangulated."""
-        source = self.parameterAsSource(parameters, "INPUT", context)
-        is_triangles = source is not None and _holds_polygons(source)
-        return () if is_triangles else (dependencies.PYTHONCDT,)
+    def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
+        """Return what edges that are given need; without them SciPy triangulates."""
+        has_edges = request.has("BREAKLINES") or request.has("CLIP")
+        return (dependencies.PYTHONCDT,) if has_edges else ()
 
-    def prepare(self, parameters, context, feedback):
+    def take_layers(self, request: Request) -> None:
         """Take the sources, in the thread that the layers live in."""
-        self.source = self.parameterAsSource(parameters, "INPUT", context)
-        if self.source is None:
-            raise QgsProcessingException(self.invalidSourceError(parameters, "INPUT"))
-        self.breaklines = self.parameterAsSource(parameters, "BREAKLINES", context)
-        self.clip = self.parameterAsSource(parameters, "CLIP", context)
+        source = request.source("INPUT")
+        if source is None:
+            raise QgsProcessingException(self.invalidSourceError(request.parameters, "INPUT"))
+        self.source = source
+        self.breaklines = request.source("BREAKLINES")
+        self.clip = request.source("CLIP")
 
-    def terrain(self, parameters, context, feedback):
+    def terrain(self, request: Request) -> Terrain:
         """Return the terrain in the layers."""
-        from wavelet_gis.model.tin import TinTerrain, frame_of_coordinates
-
         from ..qgis_io.crs_and_progress import coordinate_system
 
         system = coordinate_system(self.source.sourceCrs())
-        unit = vertical_unit(self, parameters, context)
-        name = self.source.sourceName()
-        self.locked = None
+        self.locked = self.profile = None
         if _holds_polygons(self.source):
-            mesh, frame, unit = self._mesh_of_triangles(name, system, unit, feedback)
-        else:
-            points = self._points(parameters, context, feedback)
-            frame, unit = frame_of_coordinates(name, points.xyz, system, unit)
-            mesh = self._mesh_of_points(parameters, context, points, frame, feedback)
-        return TinTerrain(name, mesh, system, frame, unit)
+            return self._terrain_of_triangles(request, system)
+        return self._terrain_of_points(request, system)
 
-    def more_options(self, parameters, context, terrain):
+    def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:
         """Return the locked vertices and the weights of the attributes."""
-        names = terrain.mesh.attribute_names
-        options = weight_options(self, parameters, context, names)
-        if self.locked is not None and self.locked.any():
-            options["locked"] = self.locked
-        return options
+        weights = weight_options(request, terrain.mesh.attribute_names)
+        is_any_locked = self.locked is not None and self.locked.any()
+        return {"attribute_weights": weights, "locked": self.locked if is_any_locked else None}
 
-    def _mesh_of_triangles(self, name, system, unit, feedback):
-        from wavelet_gis.model.tin import frame_of_coordinates, mesh_of_corners
+    def more_figures(self, request: Request, geo: GeoPyramid) -> Values:
+        """Return how far the coarsest level is from the terrain along the lines."""
+        from wavelet_gis.workflows.extract import measured
+
+        if self.profile is None or len(self.profile) == 0:
+            return {}
+        errors = measured(geo.pyramid.mesh(0), self.profile, geo.frame.z_scale)
+        request.say(
+            tr("Along breaklines and outline: RMSE {:.4g}, largest error {:.4g}").format(
+                errors.rmse, errors.max_error
+            )
+        )
+        return {"RMSE_LINES": errors.rmse, "MAX_ERROR_LINES": errors.max_error}
+
+    def _terrain_of_triangles(self, request: Request, system: CoordinateSystem) -> Terrain:
+        from wavelet_gis.model.tin import terrain_of_triangles
 
         from ..qgis_io.vectors import read_triangles
 
         if self.breaklines is not None or self.clip is not None:
             raise QgsProcessingException(
-                self.tr(
+                tr(
                     "Breaklines and clip polygons are for points; the edges of a triangle layer "
                     "stay as they are. Take its vertices, or leave them out."
                 )
             )
-        feedback.setProgressText(self.tr("Reading the triangles"))
-        corners = read_triangles(self.source, feedback)
-        frame, unit = frame_of_coordinates(name, corners.reshape(-1, 3), system, unit)
-        return (
-            mesh_of_corners(frame.to_local(corners.reshape(-1, 3)).reshape(corners.shape)),
-            frame,
-            unit,
+        request.stage(tr("Reading the triangles"))
+        corners = read_triangles(self.source, request.feedback)
+        return terrain_of_triangles(
+            self.source.sourceName(), corners, system, vertical_unit(request)
         )
 
-    def _points(self, parameters, context, feedback):
-        from ..qgis_io.vectors import read_points
-
-        feedback.setProgressText(self.tr("Reading the points"))
-        self.attribute_names = self.parameterAsStrings(parameters, "ATTRIBUTES", context)
-        return read_points(
-            self.source,
-            self.parameterAsString(parameters, "Z_FIELD", context) or None,
-            self.attribute_names,
-            self.parameterAsString(parameters, "LOCK_FIELD", context) or None,
-            feedback,
-        )
-
-    def _mesh_of_points(self, parameters, context, points, frame, feedback):
+    def _terrain_of_points(self, request: Request, system: CoordinateSystem) -> Terrain:
         import numpy as np
 
-        from wavelet_gis.model.tin import tin_with_lines
+        from wavelet_core import TriangleMesh
+        from wavelet_gis.model.drape import default_tolerance, drape
+        from wavelet_gis.model.terrain import terrain_of_mesh
+        from wavelet_gis.model.tin import frame_of_coordinates, tin_with_lines
 
         from ..qgis_io.constraints import read_constraints
-        from ..qgis_io.crs_and_progress import require_running
+        from ..qgis_io.vectors import read_points
 
+        request.stage(tr("Reading the points"))
+        name, attribute_names = self.source.sourceName(), request.strings("ATTRIBUTES")
+        points = read_points(
+            self.source,
+            request.text("Z_FIELD") or None,
+            attribute_names,
+            request.text("LOCK_FIELD") or None,
+            request.feedback,
+        )
+        frame, unit = frame_of_coordinates(name, points.xyz, system, vertical_unit(request))
         constraints = read_constraints(
             self.breaklines,
             self.clip,
             self.source.sourceCrs(),
-            context.transformContext(),
-            feedback,
+            request.transforms,
+            request.feedback,
         )
         inside = constraints.contains(points.xyz[:, :2])
         if not inside.any():
             raise QgsProcessingException(
-                self.tr("No point is inside the clip polygon; check that the layers overlap.")
+                tr("No point is inside the clip polygon; check that the layers overlap.")
             )
         if constraints.breaklines and not constraints.meets(points.xyz[inside]):
             raise QgsProcessingException(
-                self.tr(
+                tr(
                     "No breakline is where the points are; check that the layers overlap, or leave "
                     "the breaklines out."
                 )
             )
-        require_running(feedback)
-        feedback.setProgressText(self.tr("Triangulating {} points").format(int(inside.sum())))
+        local = frame.to_local(points.xyz)
+        breaklines = [frame.to_local(line) for line in constraints.breaklines]
+        outline = [frame.to_local(ring) for ring in constraints.outline]
+        if breaklines or outline:
+            request.stage(tr("Laying lines on the terrain"))
+            tolerance = _first_of(request, "LINE_TOLERANCE", "MAX_ERROR")
+            draped = drape(
+                [*breaklines, *outline],
+                TriangleMesh.from_points(local),
+                default_tolerance(local) if tolerance is None else tolerance * frame.z_scale,
+            )
+            self.profile = draped.profile
+            breaklines, outline = (
+                draped.lines[: len(breaklines)],
+                draped.lines[len(breaklines) :],
+            )
+        request.stage(tr("Triangulating {} points").format(int(inside.sum())))
 
-        def contains(positions):
+        def contains(positions: NDArray[np.float64]) -> NDArray[np.bool_]:
             x, y = positions.T
             return constraints.contains(np.column_stack([frame.file_x(x), frame.file_y(y)]))
 
         tin = tin_with_lines(
-            frame.to_local(points.xyz[inside]),
+            local[inside],
             points.attributes[inside],
-            self.attribute_names,
-            breaklines=[frame.to_local(line) for line in constraints.breaklines],
-            outline=[frame.to_local(ring) for ring in constraints.outline],
+            attribute_names,
+            breaklines=breaklines,
+            outline=outline,
             contains=contains,
             is_marked=points.is_marked[inside],
         )
         self.locked = tin.is_marked
-        if self.parameterAsBool(parameters, "LOCK_BREAKLINES", context):
-            self.locked = tin.is_marked | tin.is_on_line
-        return tin.mesh
+        if request.flag("LOCK_BREAKLINES"):
+            self.locked = tin.is_marked | tin.is_on_line | tin.is_on_outline
+        return terrain_of_mesh(name, tin.mesh, system, frame, unit)
 
 
-def _holds_polygons(source) -> bool:
+def _first_of(request: Request, *names: str) -> float | None:
+    """Return the first number that is given."""
+    numbers = (request.number(name) for name in names)
+    return next((number for number in numbers if number is not None), None)
+
+
+def _holds_polygons(source: QgsProcessingFeatureSource) -> bool:
     kind = QgsWkbTypes.geometryType(source.wkbType())
-    return kind == QgsWkbTypes.GeometryType.PolygonGeometry
+    return bool(kind == POLYGON_GEOMETRY)

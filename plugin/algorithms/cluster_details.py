@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from functools import partial
+from typing import TYPE_CHECKING, Literal, cast
 
 from qgis.core import (
-    QgsProcessing,
-    QgsProcessingException,
+    QgsProcessingFeatureSource,
     QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterFeatureSink,
@@ -19,9 +19,22 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..parameters.analysis_options import DOUBLE, INTEGER, choice
+from ..base import Values
+from ..parameters.choices import choice
+from ..parameters.pyramid import crs_of
+from ..parameters.request import Request
 from ..ui import dependencies
+from ..ui.enums import NUMERIC_FIELD, POINTS, POLYGONS, REAL_NUMBER, WHOLE_NUMBER
+from ..ui.exceptions import QgsProcessingException
+from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
+    from wavelet_gis.workflows.cluster import Labelled
 
 METHODS = ("kmeans", "mixture")
 TEACHERS = ("nobody: find clusters", "training areas", "classes of the LAS file")
@@ -33,23 +46,29 @@ class ClusterDetails(PyramidAlgorithm):
     GROUP = "details"
     PACKAGES = (dependencies.SCIKIT_LEARN,)
 
-    def name(self):
+    training: QgsProcessingFeatureSource | None
+
+    def name(self) -> str:
         """Return the public id."""
         return "clusterdetails"
 
-    def displayName(self):
+    def displayName(self) -> str:
         """Return the name in the toolbox."""
-        return self.tr("Cluster details")
+        return tr("Cluster details")
 
-    def tags(self):
+    def shortDescription(self) -> str:
+        """Return what it does in one line."""
+        return tr("Terrain grouped into clusters, or classes, by its details at each scale")
+
+    def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
-        return self.tr(
+        return tr(
             "cluster,classification,scale signature,spectrum,landform,k-means,machine learning"
         ).split(",")
 
-    def about(self):
+    def about(self) -> str:
         """Return what it does."""
-        return self.tr(
+        return tr(
             "Groups terrain by its scale signature: how much detail each place has at each level. "
             "Without a teacher, places that are alike form clusters, numbered from smooth to "
             "rough. With training areas, or with the classes that some points of a LAS file have, "
@@ -58,97 +77,97 @@ class ClusterDetails(PyramidAlgorithm):
             "everywhere."
         )
 
-    def initAlgorithm(self, configuration=None):
+    def declare(self) -> None:
         """Declare parameters and outputs."""
         self.add_pyramid_parameter()
         self.add(
-            choice("LEARN_FROM", self.tr("Learn from"), TEACHERS),
-            self.tr("Whether clusters are found, or classes learned, and from what."),
+            choice("LEARN_FROM", tr("Learn from"), TEACHERS),
+            tr("Whether clusters are found, or classes learned, and from what."),
         )
         self._add_cluster_parameters()
         self._add_class_parameters()
         self._add_outputs()
 
-    def _add_cluster_parameters(self):
+    def _add_cluster_parameters(self) -> None:
         self.add(
             QgsProcessingParameterNumber(
                 "COUNT",
-                self.tr("Number of clusters"),
-                INTEGER,
+                tr("Number of clusters"),
+                WHOLE_NUMBER,
                 None,
                 optional=True,
                 minValue=1,
                 maxValue=254,
             ),
-            self.tr("Empty for a number found from the data (2 to 10)."),
+            tr("Empty for a number found from the data (2 to 10)."),
         )
         self.add(
-            choice("METHOD", self.tr("Method"), METHODS),
-            self.tr("<i>kmeans</i>, or a <i>mixture</i> of Gaussians of different size and shape."),
+            choice("METHOD", tr("Method"), METHODS),
+            tr("<i>kmeans</i>, or a <i>mixture</i> of Gaussians of different size and shape."),
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterString("CHANNELS", self.tr("Channels"), optional=True),
-            self.tr(
+            QgsProcessingParameterString("CHANNELS", tr("Channels"), optional=True),
+            tr(
                 "Channels whose scales count, separated by commas: z and attributes. Empty for the "
                 "geometry."
             ),
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterNumber("SEED", self.tr("Seed"), INTEGER, 0, minValue=0),
-            self.tr("Of samples and starts; the same seed gives the same result."),
+            QgsProcessingParameterNumber("SEED", tr("Seed"), WHOLE_NUMBER, 0, minValue=0),
+            tr("Of the random samples and starts; the same seed gives the same result."),
             advanced=True,
         )
 
-    def _add_class_parameters(self):
+    def _add_class_parameters(self) -> None:
         self.add(
             QgsProcessingParameterFeatureSource(
                 "TRAINING",
-                self.tr("Training areas"),
-                [QgsProcessing.SourceType.TypeVectorPolygon],
+                tr("Training areas"),
+                [POLYGONS],
                 optional=True,
             ),
-            self.tr("Polygons inside which the class is known."),
+            tr("Polygons inside which the class is known."),
         )
         self.add(
             QgsProcessingParameterField(
                 "CLASS_FIELD",
-                self.tr("Field with the class"),
+                tr("Field with the class"),
                 None,
                 "TRAINING",
-                QgsProcessingParameterField.DataType.Numeric,
+                NUMERIC_FIELD,
                 optional=True,
             ),
-            self.tr("Whole numbers from 0 to 254."),
+            tr("Whole numbers from 0 to 254."),
         )
         self.add(
             QgsProcessingParameterString(
-                "UNLABELLED", self.tr("LAS classes to predict"), "0,1", optional=True
+                "UNLABELLED", tr("LAS classes to predict"), "0,1", optional=True
             ),
-            self.tr("Classes that stand for 'not known', separated by commas."),
+            tr("Classes that stand for 'not known', separated by commas."),
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterBoolean("VALIDATE", self.tr("Tell the accuracy"), False),
-            self.tr(
+            QgsProcessingParameterBoolean("VALIDATE", tr("Report the accuracy"), False),
+            tr(
                 "Predict blocks of the map from the others, and tell how many of their labels come "
                 "out right. Takes several times as long."
             ),
             advanced=True,
         )
 
-    def _add_outputs(self):
+    def _add_outputs(self) -> None:
         self.add(
             QgsProcessingParameterNumber(
                 "CELL_SIZE",
-                self.tr("Cell size of the raster"),
-                DOUBLE,
+                tr("Cell size of the raster"),
+                REAL_NUMBER,
                 None,
                 optional=True,
                 minValue=0.0,
             ),
-            self.tr(
+            tr(
                 "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
                 "from, and for points their mean spacing."
             ),
@@ -156,73 +175,66 @@ class ClusterDetails(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterRasterDestination(
-                "RASTER", self.tr("Map of clusters"), optional=True, createByDefault=True
+                "RASTER", tr("Map of clusters"), optional=True, createByDefault=True
             ),
-            self.tr("A raster of labels; each cell has that of the nearest vertex."),
+            tr("A raster of labels; each cell has that of the nearest vertex."),
         )
         self.add(
             QgsProcessingParameterFeatureSink(
                 "OUTPUT",
-                self.tr("Clustered vertices"),
-                QgsProcessing.SourceType.TypeVectorPoint,
+                tr("Clustered vertices"),
+                POINTS,
                 optional=True,
                 createByDefault=False,
             ),
-            self.tr("Every input vertex with its label and how clearly it belongs there (0 to 1)."),
+            tr("Every input vertex with its label and how clearly it belongs there (0 to 1)."),
         )
         self.add(
             QgsProcessingParameterFileDestination(
                 "SUMMARY",
-                self.tr("Summary of the clusters"),
-                self.tr("JSON (*.json)"),
+                tr("Summary of the clusters"),
+                tr("JSON (*.json)"),
                 optional=True,
                 createByDefault=False,
             ),
-            self.tr("Size and spectrum of each cluster."),
+            tr("Size and spectrum of each cluster."),
             advanced=True,
         )
-        self.addOutput(QgsProcessingOutputNumber("N_CLUSTERS", self.tr("Number of clusters")))
+        self.addOutput(QgsProcessingOutputNumber("N_CLUSTERS", tr("Number of clusters")))
         self.addOutput(
-            QgsProcessingOutputNumber("ACCURACY", self.tr("Accuracy in blocks left out, 0 to 1"))
+            QgsProcessingOutputNumber("ACCURACY", tr("Accuracy in blocks left out, 0 to 1"))
         )
 
-    def checkParameterValues(self, parameters, context):
+    def refusal(self, request: Request) -> str | None:
         """Refuse classes to be learned from nothing."""
-        is_fine, message = super().checkParameterValues(parameters, context)
-        if not is_fine:
-            return is_fine, message
-        if self._teacher(parameters, context) == TEACHERS[1] and not (
-            parameters.get("TRAINING") and parameters.get("CLASS_FIELD")
-        ):
-            return False, self.tr("Choose the layer of training areas and its field of classes.")
+        is_by_areas = _teacher(request) == TEACHERS[1]
+        if is_by_areas and not (request.has("TRAINING") and request.has("CLASS_FIELD")):
+            return tr("Choose the layer of training areas and its field of classes.")
         try:
-            self._unlabelled(parameters, context)
+            request.whole_numbers("UNLABELLED")
         except ValueError:
-            return False, self.tr("LAS classes are numbers separated by commas, such as 0,1.")
-        return True, ""
+            return tr("LAS classes are numbers separated by commas, such as 0,1.")
+        return super().refusal(request)
 
-    def prepare(self, parameters, context, feedback):
+    def take_layers(self, request: Request) -> None:
         """Take the training areas, in the thread that their layer lives in."""
-        self.training = self.parameterAsSource(parameters, "TRAINING", context)
+        self.training = request.source("TRAINING")
 
-    def work(self, parameters, context, feedback):
+    def work(self, request: Request) -> Values:
         """Find or learn the labels, then write what was asked for."""
-        from wavelet_gis.workflows.classify import cluster_summary
-
-        geo = self.geo_pyramid(parameters, context, feedback)
-        is_learned = self._teacher(parameters, context) != TEACHERS[0]
-        find = self._classes if is_learned else self._clusters
-        labels, confidence, results = find(parameters, context, geo, feedback)
-        summary = cluster_summary(geo, labels)
-        word = self.tr("class") if is_learned else self.tr("cluster")
+        geo = self.geo_pyramid(request)
+        is_learned = _teacher(request) != TEACHERS[0]
+        labelled = self._classes(request, geo) if is_learned else self._clusters(request, geo)
+        summary = labelled.summary()
+        word = tr("class") if is_learned else tr("cluster")
         for row in summary["clusters"]:
-            feedback.pushInfo(
-                f"{word} {row['label']}: {row['n_vertices']} ({100 * row['share']:.1f} %)"
-            )
-        results["N_CLUSTERS"] = len(summary["clusters"])
-        name = "class" if is_learned else "cluster"
-        results.update(self._written(parameters, context, geo, labels, confidence, name, feedback))
-        path = self.parameterAsFileOutput(parameters, "SUMMARY", context)
+            request.say(f"{word} {row['label']}: {row['n_vertices']} ({100 * row['share']:.1f} %)")
+        results: Values = {"N_CLUSTERS": len(summary["clusters"])}
+        if labelled.validation is not None:
+            results["ACCURACY"] = labelled.validation.accuracy
+            request.say(tr("Accuracy: {:.1f} %").format(100 * labelled.validation.accuracy))
+        results.update(_written(request, labelled))
+        path = request.output_file("SUMMARY")
         if path:
             from wavelet_gis.io.atomic import new_file
 
@@ -231,104 +243,74 @@ class ClusterDetails(PyramidAlgorithm):
             results["SUMMARY"] = path
         return results
 
-    def _clusters(self, parameters, context, geo, feedback):
-        from wavelet_core.features.signature import energy_signature
-        from wavelet_gis.workflows.classify import cluster_vertices
+    def _clusters(self, request: Request, geo: GeoPyramid) -> Labelled:
+        from wavelet_gis.workflows.cluster import cluster
 
-        from ..qgis_io.crs_and_progress import progress, require_running
-
-        text = self.parameterAsString(parameters, "CHANNELS", context)
-        channels = tuple(name.strip() for name in text.split(",") if name.strip())
-        feedback.setProgressText(self.tr("Gathering the spectrum of each vertex"))
-        signature = energy_signature(geo.pyramid, channels, progress(feedback, 0.05, 0.5))
-        feedback.setProgressText(self.tr("Clustering"))
-        count = parameters.get("COUNT")
-        clusters = cluster_vertices(
-            signature,
-            None if count is None else self.parameterAsInt(parameters, "COUNT", context),
-            self.parameterAsString(parameters, "METHOD", context),
-            self.parameterAsInt(parameters, "SEED", context),
+        request.stage(tr("Gathering the spectrum of each vertex, and clustering"))
+        return cluster(
+            geo,
+            count=request.whole("COUNT"),
+            method=cast(Literal["kmeans", "mixture"], request.text("METHOD")),
+            channels=request.words("CHANNELS"),
+            seed=request.whole("SEED") or 0,
+            progress=request.progress(0.05, 0.8),
         )
-        require_running(feedback)
-        feedback.setProgress(80)
-        return clusters.labels, clusters.confidence, {}
 
-    def _classes(self, parameters, context, geo, feedback):
-        import numpy as np
+    def _classes(self, request: Request, geo: GeoPyramid) -> Labelled:
+        from wavelet_gis.workflows.cluster import classify
 
-        from wavelet_core.features.signature import plain_features, scale_features
-        from wavelet_gis.workflows.classify import learn_classes, spatial_folds, validate_classes
+        given = self._given(request, geo)
+        request.stage(tr("Gathering the spectrum of each vertex, and learning the classes"))
+        return classify(
+            geo,
+            given,
+            validate=request.flag("VALIDATE"),
+            seed=request.whole("SEED") or 0,
+            progress=request.progress(0.05, 0.8),
+        )
 
-        from ..qgis_io.crs_and_progress import progress, require_running
-
-        given = self._given(parameters, context, geo, feedback)
-        feedback.setProgressText(self.tr("Gathering the spectrum of each vertex"))
-        scales = scale_features(geo.pyramid, progress(feedback, 0.05, 0.4))
-        features = scales.joined_to(plain_features(geo.pyramid))
-        seed = self.parameterAsInt(parameters, "SEED", context)
-        results = {}
-        if self.parameterAsBool(parameters, "VALIDATE", context):
-            feedback.setProgressText(self.tr("Predicting blocks of the map from the others"))
-            plan = geo.pyramid.synthesise().vertices[:, :2]
-            validation = validate_classes(features, given, spatial_folds(plan), seed)
-            results["ACCURACY"] = validation.accuracy
-            feedback.pushInfo(self.tr("Accuracy: {:.1f} %").format(100 * validation.accuracy))
-        require_running(feedback)
-        feedback.setProgressText(self.tr("Learning the classes"))
-        classes = learn_classes(features, given, seed)
-        is_given = given >= 0
-        labels = np.where(is_given, given, classes.predicted)
-        feedback.setProgress(80)
-        return labels, np.where(is_given, 1.0, classes.confidence), results
-
-    def _given(self, parameters, context, geo, feedback):
-        if self._teacher(parameters, context) == TEACHERS[2]:
+    def _given(self, request: Request, geo: GeoPyramid) -> NDArray[np.int64]:
+        """Return the classes that are known, below 0 where they are not."""
+        if _teacher(request) == TEACHERS[2]:
             from wavelet_gis.workflows.labels import labels_from_las
 
-            return labels_from_las(geo, self._unlabelled(parameters, context))
-        from ..parameters.pyramid import crs_of
+            return labels_from_las(geo, request.whole_numbers("UNLABELLED"))
         from ..qgis_io.training import labels_inside
 
-        field = self.parameterAsString(parameters, "CLASS_FIELD", context)
-        positions = geo.frame.to_file(geo.pyramid.synthesise().vertices)
+        assert self.training is not None
         given = labels_inside(
-            self.training, field, positions, crs_of(geo), context.transformContext(), feedback
+            self.training,
+            request.text("CLASS_FIELD"),
+            geo.frame.to_file(geo.pyramid.synthesise().vertices),
+            crs_of(geo),
+            request.transforms,
+            request.feedback,
         )
         if (given < 0).all():
             raise QgsProcessingException(
-                self.tr("No vertex is inside a training area; check that the layers overlap.")
+                tr("No vertex is inside a training area; check that the layers overlap.")
             )
         return given
 
-    def _written(self, parameters, context, geo, labels, confidence, name, feedback):
-        from wavelet_gis.products.label_layer import label_layer
-        from wavelet_gis.products.vertex_raster import label_band
 
-        from ..parameters import tin_output
-        from ..parameters.pyramid import cell_size, crs_of
-        from ..qgis_io.raster_writer import write_bands
-        from ..ui import layer_styles as styles
+def _written(request: Request, labelled: Labelled) -> Values:
+    from ..parameters import tin_output
+    from ..qgis_io.raster_writer import write_bands
+    from ..ui import layer_styles as styles
 
-        results = {}
-        path = self.parameterAsOutputLayer(parameters, "RASTER", context)
-        if path:
-            size = cell_size(self, parameters, context)
-            bands = label_band(geo, geo.pyramid.synthesise(), labels, name, size)
-            write_bands(path, bands, crs_of(geo), feedback)
-            styles.style_output(context, path, styles.style_labels)
-            results["RASTER"] = path
-        if parameters.get("OUTPUT"):
-            layer = label_layer(geo, labels, confidence, name)
-            destination = tin_output.write_layer(
-                self, parameters, "OUTPUT", context, geo, layer, feedback
-            )
-            styles.style_output(context, destination, partial(styles.apply_qml, qml=layer.style))
-            results["OUTPUT"] = destination
-        return results
+    results: Values = {}
+    path = request.output_layer("RASTER")
+    if path:
+        bands = labelled.raster(request.size("CELL_SIZE"))
+        write_bands(path, bands, crs_of(labelled.geo), request.feedback)
+        styles.style_output(request.context, path, partial(styles.style_labels, name=labelled.name))
+        results["RASTER"] = path
+    if request.has("OUTPUT"):
+        results["OUTPUT"] = tin_output.write_layer(
+            request, "OUTPUT", labelled.geo, labelled.layer()
+        )
+    return results
 
-    def _teacher(self, parameters, context):
-        return self.parameterAsString(parameters, "LEARN_FROM", context) or TEACHERS[0]
 
-    def _unlabelled(self, parameters, context):
-        text = self.parameterAsString(parameters, "UNLABELLED", context)
-        return tuple(int(number) for number in text.split(",") if number.strip())
+def _teacher(request: Request) -> str:
+    return request.text("LEARN_FROM") or TEACHERS[0]

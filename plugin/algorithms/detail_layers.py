@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from qgis.core import (
-    QgsProcessing,
-    QgsProcessingException,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterNumber,
     QgsProcessingParameterRasterDestination,
 )
 
-from ..parameters.analysis_options import DOUBLE, INTEGER
+from ..base import Values
+from ..parameters.pyramid import checked_level, crs_of
+from ..parameters.request import Request
+from ..ui.enums import POINTS, REAL_NUMBER, WHOLE_NUMBER
+from ..ui.exceptions import QgsProcessingException
+from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
+
+if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 
 class DetailLayers(PyramidAlgorithm):
@@ -20,23 +28,25 @@ class DetailLayers(PyramidAlgorithm):
 
     GROUP = "details"
 
-    def name(self):
+    def name(self) -> str:
         """Return the public id."""
         return "detaillayers"
 
-    def displayName(self):
+    def displayName(self) -> str:
         """Return the name in the toolbox."""
-        return self.tr("Detail layers")
+        return tr("Detail layers")
 
-    def tags(self):
+    def shortDescription(self) -> str:
+        """Return what it does in one line."""
+        return tr("The details (wavelet coefficients) of a pyramid as points, and their energy")
+
+    def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
-        return self.tr("wavelet coefficients,detail,scale,vertex-frequency,points,pyramid").split(
-            ","
-        )
+        return tr("wavelet coefficients,detail,scale,vertex-frequency,points,pyramid").split(",")
 
-    def about(self):
+    def about(self) -> str:
         """Return what it does."""
-        return self.tr(
+        return tr(
             "Shows at which scale the terrain has its detail: a point for every vertex that the "
             "analysis removed, with the level at which it went and its detail vector (the wavelet "
             "coefficients). Points are coloured by level and sized by magnitude, as in Fig. 10b "
@@ -45,138 +55,139 @@ class DetailLayers(PyramidAlgorithm):
             "partition takes detail out where it matters least first."
         )
 
-    def initAlgorithm(self, configuration=None):
+    def declare(self) -> None:
         """Declare parameters and outputs."""
         self.add_pyramid_parameter()
         self.add(
             QgsProcessingParameterNumber(
-                "FIRST_LEVEL", self.tr("Coarsest level"), INTEGER, 0, minValue=0
+                "FIRST_LEVEL", tr("Coarsest level"), WHOLE_NUMBER, 0, minValue=0
             ),
-            self.tr("Details of this level and finer ones."),
+            tr("Details of this level and finer ones."),
         )
         self.add(
             QgsProcessingParameterNumber(
-                "LAST_LEVEL", self.tr("Finest level"), INTEGER, None, optional=True, minValue=0
+                "LAST_LEVEL", tr("Finest level"), WHOLE_NUMBER, None, optional=True, minValue=0
             ),
-            self.tr("Details of this level and coarser ones; empty for all."),
+            tr("Details of this level and coarser ones; empty for all."),
         )
         self.add(
             QgsProcessingParameterNumber(
-                "MIN_MAGNITUDE", self.tr("Smallest magnitude"), DOUBLE, 0.0, minValue=0.0
+                "MIN_MAGNITUDE", tr("Smallest magnitude"), REAL_NUMBER, 0.0, minValue=0.0
             ),
-            self.tr(
+            tr(
                 "Leave out points whose detail vector is shorter (in the unit of elevation where "
                 "elevation alone is lifted)."
             ),
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterFeatureSink(
-                "OUTPUT", self.tr("Details by level"), QgsProcessing.SourceType.TypeVectorPoint
-            ),
-            self.tr(
+            QgsProcessingParameterFeatureSink("OUTPUT", tr("Details by level"), POINTS),
+            tr(
                 "Fields: <i>vertex_id</i> in the input, <i>level</i>, <i>w_…</i> the detail of a "
                 "channel, <i>magnitude</i> the length of the detail vector."
             ),
         )
         self.add(
             QgsProcessingParameterRasterDestination(
-                "ENERGY", self.tr("Energy by level"), optional=True, createByDefault=False
+                "ENERGY", tr("Energy by level"), optional=True, createByDefault=False
             ),
-            self.tr(
-                "A raster with one band a level: the root mean square detail around each place, in "
-                "the unit of elevation. It maps at which scale the terrain is rough."
+            tr(
+                "A raster with one band for each level: the root mean square detail around each "
+                "place, in the unit of elevation. It maps at which scale the terrain is rough."
             ),
         )
         self.add(
             QgsProcessingParameterNumber(
                 "CELL_SIZE",
-                self.tr("Cell size of the raster"),
-                DOUBLE,
+                tr("Cell size of the raster"),
+                REAL_NUMBER,
                 None,
                 optional=True,
                 minValue=0.0,
             ),
-            self.tr(
+            tr(
                 "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
                 "from, and for points their mean spacing."
             ),
             advanced=True,
         )
-        self.addOutput(QgsProcessingOutputNumber("N_DETAILS", self.tr("Number of points")))
-        self.addOutput(QgsProcessingOutputNumber("MAX_MAGNITUDE", self.tr("Largest magnitude")))
+        self.addOutput(QgsProcessingOutputNumber("N_DETAILS", tr("Number of points")))
+        self.addOutput(QgsProcessingOutputNumber("MAX_MAGNITUDE", tr("Largest magnitude")))
 
-    def work(self, parameters, context, feedback):
+    def work(self, request: Request) -> Values:
         """Walk the levels from coarse to fine and add their points."""
         import numpy as np
 
         from wavelet_gis.products.layers import detail_layers
 
-        from ..parameters.pyramid import checked_level, crs_of
         from ..qgis_io import vectors
         from ..qgis_io.crs_and_progress import require_running
         from ..ui import layer_styles as styles
 
-        geo = self.geo_pyramid(parameters, context, feedback)
-        n_levels = geo.pyramid.n_levels
-        if n_levels == 0:
-            raise QgsProcessingException(
-                self.tr("This pyramid has no level, so it has no details.")
-            )
-        first = checked_level(geo, self.parameterAsInt(parameters, "FIRST_LEVEL", context))
-        last = n_levels - 1
-        if parameters.get("LAST_LEVEL") is not None:
-            last = min(self.parameterAsInt(parameters, "LAST_LEVEL", context), last)
-        if first > last:
-            raise QgsProcessingException(
-                self.tr(
-                    "The coarsest level, {}, is finer than the finest, {}; exchange them."
-                ).format(first, last)
-            )
-        smallest = self.parameterAsDouble(parameters, "MIN_MAGNITUDE", context)
-        sink, destination = None, None
+        geo = self.geo_pyramid(request)
+        first, last = _levels(request, geo)
+        smallest = request.number("MIN_MAGNITUDE") or 0.0
+        sink, destination = None, ""
         n_details, largest = 0, 0.0
         for level, layer in enumerate(detail_layers(geo)):
-            require_running(feedback)
+            require_running(request.feedback)
             if sink is None:  # all levels have the same fields
                 sink, destination = self.parameterAsSink(
-                    parameters,
+                    request.parameters,
                     "OUTPUT",
-                    context,
+                    request.context,
                     vectors.fields_of(layer),
                     vectors.wkb_type_of(layer),
                     crs_of(geo),
                 )
                 if sink is None:
-                    raise QgsProcessingException(self.invalidSinkError(parameters, "OUTPUT"))
+                    raise QgsProcessingException(
+                        self.invalidSinkError(request.parameters, "OUTPUT")
+                    )
             if level > last:
                 break
             if level < first:
                 continue
             magnitude = layer.fields["magnitude"]
             rows = np.flatnonzero(magnitude >= smallest)
-            n_details += vectors.add_layer(sink, layer, feedback, rows)
+            n_details += vectors.add_layer(sink, layer, request.feedback, rows)
             largest = max(largest, float(magnitude.max(initial=0.0)))
-            feedback.setProgress(60 * (level - first + 1) / (last - first + 1))
-        styles.style_output(context, destination, styles.style_details)
+            request.progress(0.0, 0.6)((level - first + 1) / (last - first + 1))
+        styles.style_output(request.context, destination, styles.style_details)
         results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
-        if parameters.get("ENERGY"):
-            results["ENERGY"] = self._write_energy(parameters, context, geo, feedback)
+        if request.has("ENERGY"):
+            results["ENERGY"] = _write_energy(request, geo)
         return results
 
-    def _write_energy(self, parameters, context, geo, feedback):
-        from wavelet_gis.products.vertex_raster import value_bands
-        from wavelet_gis.products.vertex_tables import band_names, energy_columns
 
-        from ..parameters.pyramid import cell_size, crs_of
-        from ..qgis_io.crs_and_progress import progress
-        from ..qgis_io.raster_writer import write_bands
+def _levels(request: Request, geo: GeoPyramid) -> tuple[int, int]:
+    """Return the coarsest and the finest level whose details are shown."""
+    n_levels = geo.pyramid.n_levels
+    if n_levels == 0:
+        raise QgsProcessingException(tr("This pyramid has no level, so it has no details."))
+    first = checked_level(geo, request.whole("FIRST_LEVEL") or 0)
+    wanted = request.whole("LAST_LEVEL")
+    last = n_levels - 1 if wanted is None else min(wanted, n_levels - 1)
+    if first > last:
+        raise QgsProcessingException(
+            tr("The coarsest level, {}, is finer than the finest, {}; exchange them.").format(
+                first, last
+            )
+        )
+    return first, last
 
-        path = self.parameterAsOutputLayer(parameters, "ENERGY", context)
-        feedback.setProgressText(self.tr("Gathering the energy of each level"))
-        columns = energy_columns(geo, progress=progress(feedback, 0.6, 0.9))
-        finest = geo.pyramid.synthesise()
-        size = cell_size(self, parameters, context)
-        bands = value_bands(geo, finest, columns, band_names(geo), size)
-        write_bands(path, bands, crs_of(geo), feedback)
-        return path
+
+def _write_energy(request: Request, geo: GeoPyramid) -> str:
+    from wavelet_gis.workflows.details import details
+
+    from ..qgis_io.raster_writer import write_bands
+    from ..ui import layer_styles as styles
+
+    path = request.output_layer("ENERGY")
+    request.stage(tr("Gathering the energy of each level"))
+    bands = details(geo, what="energy").raster(
+        request.size("CELL_SIZE"), request.progress(0.6, 0.9)
+    )
+    write_bands(path, bands, crs_of(geo), request.feedback)
+    styles.style_output(request.context, path, styles.style_energy)
+    return path

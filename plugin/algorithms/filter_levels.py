@@ -1,9 +1,10 @@
-"""Noise taken out of a pyramid, or chosen scales damped, boosted or isolated."""
+"""Noise removed from a pyramid, or chosen scales damped, boosted or isolated."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from qgis.core import (
-    QgsProcessingException,
     QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterFileDestination,
@@ -13,10 +14,25 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..parameters.analysis_options import DOUBLE, INTEGER, matrix_pairs
-from ..parameters.restored_output import add_restored_outputs, nothing_written, write_restored
-from ..ui import dependencies
+from ..base import Values
+from ..parameters.pyramid import crs_of, save
+from ..parameters.request import Request
+from ..parameters.restored_output import (
+    add_restored_outputs,
+    nothing_written,
+    restored_packages,
+    write_restored,
+)
+from ..ui.enums import REAL_NUMBER, WHOLE_NUMBER
+from ..ui.exceptions import QgsProcessingException
+from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
+
+if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
+    from wavelet_gis.workflows.filtering import Filtered
+
+    from ..ui.dependencies import Package
 
 
 class FilterLevels(PyramidAlgorithm):
@@ -24,30 +40,34 @@ class FilterLevels(PyramidAlgorithm):
 
     GROUP = "reconstruction"
 
-    def name(self):
+    def name(self) -> str:
         """Return the public id."""
         return "filterlevels"
 
-    def displayName(self):
+    def displayName(self) -> str:
         """Return the name in the toolbox."""
-        return self.tr("Filter levels")
+        return tr("Filter levels")
 
-    def tags(self):
+    def shortDescription(self) -> str:
+        """Return what it does in one line."""
+        return tr("Noise removed from a pyramid, or chosen scales damped, boosted or isolated")
+
+    def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
-        return self.tr("denoise,smooth,sharpen,band,equaliser,filter,gain,wavelet,pyramid").split(
-            ","
-        )
+        return tr(
+            "denoise,smooth,sharpen,generalise,generalize,band,equaliser,filter,gain,wavelet,pyramid"
+        ).split(",")
 
-    def about(self):
+    def about(self) -> str:
         """Return what it does."""
-        return self.tr(
+        return tr(
             "Changes chosen scales of the terrain: damps or boosts the details of each level by a "
-            "gain, keeps a band of levels or of sizes on the ground, or takes out noise while "
+            "gain, keeps a band of levels or of sizes on the ground, or removes noise while "
             "banks and ridges stay. It gives the filtered pyramid and the filtered DEM, point "
-            "cloud or TIN. Noise is taken out first, then gains apply."
+            "cloud or TIN. Noise is removed first, then gains apply."
         )
 
-    def initAlgorithm(self, configuration=None):
+    def declare(self) -> None:
         """Declare parameters and outputs."""
         self.add_pyramid_parameter()
         self._add_noise_parameters()
@@ -55,78 +75,78 @@ class FilterLevels(PyramidAlgorithm):
         self.add(
             QgsProcessingParameterFileDestination(
                 "OUTPUT",
-                self.tr("Filtered pyramid"),
-                self.tr("GeoPackage (*.gpkg)"),
+                tr("Filtered pyramid"),
+                tr("GeoPackage (*.gpkg)"),
                 optional=True,
                 createByDefault=False,
             ),
-            self.tr("A pyramid file like the input, with the changed details."),
+            tr("A pyramid file like the input, with the changed details."),
         )
         add_restored_outputs(
             self,
-            self.tr("Filtered DEM"),
-            self.tr("Filtered point cloud"),
-            self.tr("Filtered TIN"),
+            tr("Filtered DEM"),
+            tr("Filtered point cloud"),
+            tr("Filtered TIN"),
         )
         self.add(
             QgsProcessingParameterRasterDestination(
                 "DIFFERENCE",
-                self.tr("Difference of the DEMs"),
+                tr("Difference of the DEMs"),
                 optional=True,
                 createByDefault=False,
             ),
-            self.tr("Filtered minus original elevation, for a pyramid of a DEM."),
+            tr("Filtered minus original elevation, for a pyramid of a DEM."),
         )
         for name, description in (
-            ("SIGMA", self.tr("Standard deviation of the noise, in the unit of elevation")),
-            ("RMS_CHANGE", self.tr("Root mean square change of elevation")),
-            ("MAX_CHANGE", self.tr("Largest change of elevation")),
+            ("SIGMA", tr("Standard deviation of the noise, in the unit of elevation")),
+            ("RMS_CHANGE", tr("Root mean square change of elevation")),
+            ("MAX_CHANGE", tr("Largest change of elevation")),
         ):
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
-    def _add_noise_parameters(self):
+    def _add_noise_parameters(self) -> None:
         self.add(
-            QgsProcessingParameterBoolean("DENOISE", self.tr("Take out noise"), False),
-            self.tr("White noise, such as that of a laser scanner."),
+            QgsProcessingParameterBoolean("DENOISE", tr("Remove noise"), False),
+            tr("White noise, such as that of a laser scanner."),
         )
         self.add(
             QgsProcessingParameterNumber(
                 "SIGMA_OF_NOISE",
-                self.tr("Standard deviation of the noise"),
-                DOUBLE,
+                tr("Standard deviation of the noise"),
+                REAL_NUMBER,
                 None,
                 optional=True,
                 minValue=0.0,
             ),
-            self.tr("In the unit of elevation; empty to have it estimated from the finest level."),
+            tr("In the unit of elevation; empty to have it estimated from the finest level."),
         )
         self.add(
             QgsProcessingParameterNumber(
-                "PYRAMIDS", self.tr("Number of pyramids averaged"), INTEGER, 8, minValue=0
+                "PYRAMIDS", tr("Number of pyramids averaged"), WHOLE_NUMBER, 8, minValue=0
             ),
-            self.tr(
+            tr(
                 "Pyramids in random order, each denoised, whose average leaves no traces of "
                 "triangles. 0 thresholds the details of this pyramid alone, which is quick."
             ),
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterString("CHANNELS", self.tr("Channels"), "z", optional=True),
-            self.tr("Which to take noise from, separated by commas: z and attributes."),
+            QgsProcessingParameterString("CHANNELS", tr("Channels"), "z", optional=True),
+            tr("Channels to remove noise from, separated by commas: z and attributes."),
             advanced=True,
         )
 
-    def _add_scale_parameters(self):
+    def _add_scale_parameters(self) -> None:
         self.add(
             QgsProcessingParameterMatrix(
                 "GAINS",
-                self.tr("Gains"),
+                tr("Gains"),
                 1,
                 False,
-                [self.tr("Level"), self.tr("Gain")],
+                [tr("Level"), tr("Gain")],
                 optional=True,
             ),
-            self.tr(
+            tr(
                 "What the details of a level are multiplied by: 0 drops them, 0.5 halves, 2 "
                 "doubles. Levels that are not listed stay. Level 0 is the coarsest."
             ),
@@ -134,18 +154,18 @@ class FilterLevels(PyramidAlgorithm):
         for name, description, text in (
             (
                 "FIRST_LEVEL",
-                self.tr("Coarsest level kept"),
-                self.tr("Drop the details of coarser levels."),
+                tr("Coarsest level kept"),
+                tr("Drop the details of coarser levels."),
             ),
             (
                 "LAST_LEVEL",
-                self.tr("Finest level kept"),
-                self.tr("Drop the details of finer levels."),
+                tr("Finest level kept"),
+                tr("Drop the details of finer levels."),
             ),
         ):
             self.add(
                 QgsProcessingParameterNumber(
-                    name, description, INTEGER, None, optional=True, minValue=0
+                    name, description, WHOLE_NUMBER, None, optional=True, minValue=0
                 ),
                 text,
                 advanced=True,
@@ -153,144 +173,126 @@ class FilterLevels(PyramidAlgorithm):
         for name, description, text in (
             (
                 "SMALLEST_SIZE",
-                self.tr("Smallest size kept"),
-                self.tr("Drop details that are smaller on the ground, in metres."),
+                tr("Smallest size kept"),
+                tr("Drop details that are smaller on the ground, in metres."),
             ),
             (
                 "LARGEST_SIZE",
-                self.tr("Largest size kept"),
-                self.tr("Drop details that are larger on the ground, in metres."),
+                tr("Largest size kept"),
+                tr("Drop details that are larger on the ground, in metres."),
             ),
         ):
             self.add(
                 QgsProcessingParameterNumber(
-                    name, description, DOUBLE, None, optional=True, minValue=0.0
+                    name, description, REAL_NUMBER, None, optional=True, minValue=0.0
                 ),
                 text,
             )
         self.add(
             QgsProcessingParameterBoolean(
-                "DROP_COARSE", self.tr("Leave out the coarsest surface"), False
+                "DROP_COARSE", tr("Leave out the coarsest surface"), False
             ),
-            self.tr("So that the kept details remain by themselves, around zero."),
+            tr("So that the kept details remain by themselves, around zero."),
             advanced=True,
         )
 
-    def checkParameterValues(self, parameters, context):
+    def refusal(self, request: Request) -> str | None:
         """Refuse when there is nothing to do, or gains that are no numbers."""
-        is_fine, message = super().checkParameterValues(parameters, context)
-        if not is_fine:
-            return is_fine, message
+        missing = super().refusal(request)
+        if missing:
+            return missing
         try:
-            gains = self._gains(parameters, context)
+            gains = _gains(request)
         except ValueError:
-            return False, self.tr("Gains are pairs of a level and a number, such as 5 and 0.5.")
-        asks = gains or self._levels(parameters, context) or self._sizes(parameters, context)
-        flags = [self.parameterAsBool(parameters, n, context) for n in ("DENOISE", "DROP_COARSE")]
-        if not asks and not any(flags):
-            return False, self.tr(
-                "Nothing would change: take out noise, list gains, or choose levels or sizes."
-            )
-        if self._levels(parameters, context) and self._sizes(parameters, context):
-            return False, self.tr("Choose levels or sizes to keep, not both.")
-        return True, ""
+            return tr("Gains are pairs of a level and a number, such as 5 and 0.5.")
+        levels = request.has("FIRST_LEVEL") or request.has("LAST_LEVEL")
+        sizes = _sizes(request)
+        flags = request.flag("DENOISE") or request.flag("DROP_COARSE")
+        if not (gains or levels or sizes or flags):
+            return tr("Nothing would change: remove noise, list gains, or choose levels or sizes.")
+        if levels and sizes:
+            return tr("Choose levels or sizes to keep, not both.")
+        return None
 
-    def packages(self, parameters, context):
+    def packages(self, request: Request) -> tuple[Package, ...]:
         """Return laspy where a point cloud is asked for."""
-        if parameters.get("POINT_CLOUD"):
-            return dependencies.for_las(str(parameters["POINT_CLOUD"]))
-        return ()
+        return restored_packages(request)
 
-    def work(self, parameters, context, feedback):
+    def work(self, request: Request) -> Values:
         """Filter, then write what was asked for."""
-        from wavelet_gis.workflows.filtering import (
-            change_between,
-            chosen_gains,
-            denoised_record,
-            scaled_record,
-        )
+        from wavelet_gis.workflows.filtering import filter_pyramid
 
-        from ..parameters import pyramid as pyramids
-        from ..qgis_io.crs_and_progress import progress, require_running
-
-        before = self.geo_pyramid(parameters, context, feedback)
-        geo, results = before, {}
-        if self.parameterAsBool(parameters, "DENOISE", context):
-            feedback.setProgressText(self.tr("Taking out the noise"))
-            geo, sigmas = denoised_record(
-                geo,
-                self._number(parameters, "SIGMA_OF_NOISE", self.parameterAsDouble, context),
-                channels=self._channels(parameters, context),
-                n_pyramids=self.parameterAsInt(parameters, "PYRAMIDS", context),
-                progress=progress(feedback, 0.05, 0.7),
-            )
-            results["SIGMA"] = next(iter(sigmas.values()))
-        gains = chosen_gains(
-            geo,
-            self._gains(parameters, context),
-            levels=self._level_bounds(parameters, context, geo),
-            metres=self._sizes(parameters, context),
+        before = self.geo_pyramid(request)
+        sigma = request.number("SIGMA_OF_NOISE")
+        request.stage(tr("Filtering"))
+        filtered = filter_pyramid(
+            before,
+            gains=_gains(request),
+            levels=_levels(request, before),
+            metres=_sizes(request),
+            drop_coarse=request.flag("DROP_COARSE"),
+            denoise=request.flag("DENOISE") and (True if sigma is None else sigma),
+            n_pyramids=request.whole("PYRAMIDS") or 0,
+            channels=request.words("CHANNELS") or ["z"],
+            progress=request.progress(0.05, 0.7),
         )
-        drops_coarse = self.parameterAsBool(parameters, "DROP_COARSE", context)
-        if gains or drops_coarse:
-            geo = scaled_record(geo, gains, drops_coarse=drops_coarse)
-        require_running(feedback)
-        for line in geo.history[len(before.history) :]:
-            feedback.pushInfo(line)
-        results["RMS_CHANGE"], results["MAX_CHANGE"] = change_between(before, geo)
-        n_figures = len(results)
-        finest = geo.pyramid.synthesise()
-        path = self.parameterAsFileOutput(parameters, "OUTPUT", context)
+        for line in filtered.changes:
+            request.say(line)
+        results: Values = {}
+        path = request.output_file("OUTPUT")
         if path:
-            geo = geo.with_errors(progress(feedback, 0.7, 0.75))
-            pyramids.save(geo, path, feedback, 0.75, 0.85)
+            request.stage(tr("Measuring the errors of every level"))
+            geo = filtered.geo.with_errors(request.progress(0.7, 0.75), filtered.finest)
+            save(request, geo, path, 0.75, 0.85)
             results["OUTPUT"] = path
-        results.update(write_restored(self, parameters, context, geo, finest, feedback))
-        results.update(self._difference(parameters, context, before, geo, feedback))
-        if len(results) == n_figures:
-            raise nothing_written(geo.source.kind)
-        return results
+        results.update(write_restored(request, filtered.restored()))
+        results.update(self._difference(request, filtered))
+        if not results:
+            raise nothing_written(before)
+        return {**_figures(filtered), **results}
 
-    def _difference(self, parameters, context, before, after, feedback):
-        from wavelet_gis.products.level_raster import surface_difference
-
-        from ..parameters.pyramid import crs_of
+    def _difference(self, request: Request, filtered: Filtered) -> Values:
         from ..qgis_io.raster_writer import write_dem
+        from ..ui import layer_styles as styles
 
-        path = self.parameterAsOutputLayer(parameters, "DIFFERENCE", context)
+        path = request.output_layer("DIFFERENCE")
         if not path:
             return {}
-        if before.source.kind != "raster":
+        if filtered.before.origin.grid is None:
             raise QgsProcessingException(
-                self.tr("A difference of DEMs needs a pyramid that was made from a DEM.")
+                tr("A difference of DEMs needs a pyramid that was made from a DEM.")
             )
-        write_dem(path, surface_difference(before, after), crs_of(before), feedback)
+        write_dem(path, filtered.difference(), crs_of(filtered.before), request.feedback)
+        styles.style_output(request.context, path, styles.style_difference)
         return {"DIFFERENCE": path}
 
-    def _gains(self, parameters, context):
-        pairs = matrix_pairs(self, parameters, "GAINS", context)
-        return [(int(level), float(gain)) for level, gain in pairs]
 
-    def _levels(self, parameters, context):
-        return [n for n in ("FIRST_LEVEL", "LAST_LEVEL") if parameters.get(n) is not None]
+def _figures(filtered: Filtered) -> Values:
+    """Return how much changed, and the noise that was taken out of the first channel."""
+    rms, largest = filtered.change()
+    sigma = next(iter(filtered.sigmas.values()), None)
+    return {
+        **({} if sigma is None else {"SIGMA": sigma}),
+        "RMS_CHANGE": rms,
+        "MAX_CHANGE": largest,
+    }
 
-    def _level_bounds(self, parameters, context, geo):
-        if not self._levels(parameters, context):
-            return None
-        first = self._number(parameters, "FIRST_LEVEL", self.parameterAsInt, context)
-        last = self._number(parameters, "LAST_LEVEL", self.parameterAsInt, context)
-        return first or 0, geo.pyramid.n_levels - 1 if last is None else last
 
-    def _sizes(self, parameters, context):
-        smallest = self._number(parameters, "SMALLEST_SIZE", self.parameterAsDouble, context)
-        largest = self._number(parameters, "LARGEST_SIZE", self.parameterAsDouble, context)
-        if smallest is None and largest is None:
-            return None
-        return smallest or 0.0, float("inf") if largest is None else largest
+def _gains(request: Request) -> list[tuple[int, float]]:
+    return [(int(level), float(gain)) for level, gain in request.pairs("GAINS")]
 
-    def _channels(self, parameters, context):
-        text = self.parameterAsString(parameters, "CHANNELS", context)
-        return [name.strip() for name in text.split(",") if name.strip()] or ["z"]
 
-    def _number(self, parameters, name, read, context):
-        return None if parameters.get(name) is None else read(parameters, name, context)
+def _levels(request: Request, geo: GeoPyramid) -> tuple[int, int] | None:
+    """Return the coarsest and the finest level whose details are kept; None for all."""
+    first, last = request.whole("FIRST_LEVEL"), request.whole("LAST_LEVEL")
+    if first is None and last is None:
+        return None
+    return first or 0, geo.pyramid.n_levels - 1 if last is None else last
+
+
+def _sizes(request: Request) -> tuple[float, float] | None:
+    """Return the smallest and the largest size that is kept, in metres; None for all."""
+    smallest, largest = request.number("SMALLEST_SIZE"), request.number("LARGEST_SIZE")
+    if smallest is None and largest is None:
+        return None
+    return smallest or 0.0, float("inf") if largest is None else largest

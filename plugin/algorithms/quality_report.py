@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 
-from qgis.core import (
-    QgsProcessingException,
-    QgsProcessingParameterFileDestination,
-    QgsProcessingParameterString,
-)
+from qgis.core import QgsProcessingParameterFileDestination, QgsProcessingParameterString
 
+from ..base import Values
+from ..parameters.pyramid import add_figure_outputs, figures
+from ..parameters.request import Request
+from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
 
 
@@ -18,36 +18,38 @@ class QualityReport(PyramidAlgorithm):
 
     GROUP = "quality"
 
-    def name(self):
+    def name(self) -> str:
         """Return the public id."""
         return "qualityreport"
 
-    def displayName(self):
+    def displayName(self) -> str:
         """Return the name in the toolbox."""
-        return self.tr("Quality report")
+        return tr("Quality report")
 
-    def tags(self):
+    def shortDescription(self) -> str:
+        """Return what it does in one line."""
+        return tr("Sizes, errors and triangle shapes of every level of a pyramid, as a web page")
+
+    def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
-        return self.tr("report,html,rmse,error,statistics,triangle quality,pyramid,wavelet").split(
-            ","
-        )
+        return tr(
+            "report,html,rmse,error,accuracy,statistics,triangle quality,pyramid,wavelet"
+        ).split(",")
 
-    def about(self):
+    def about(self) -> str:
         """Return what it does."""
-        return self.tr(
+        return tr(
             "Writes one HTML page on a pyramid: sizes, errors and triangle quality of every level, "
             "curves of the RMSE, histograms of the details, hillshades of the input and of chosen "
             "levels, where the error is, and all parameters. The page needs no network."
         )
 
-    def initAlgorithm(self, configuration=None):
+    def declare(self) -> None:
         """Declare parameters and outputs."""
-        from ..parameters.pyramid import add_figure_outputs
-
         self.add_pyramid_parameter()
         self.add(
-            QgsProcessingParameterString("LEVELS", self.tr("Levels to picture"), optional=True),
-            self.tr(
+            QgsProcessingParameterString("LEVELS", tr("Levels shown as pictures"), optional=True),
+            tr(
                 "Numbers separated by commas. Empty for those with about a quarter and a twentieth "
                 "of the vertices, and the coarsest."
             ),
@@ -55,61 +57,49 @@ class QualityReport(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterFileDestination(
-                "OUTPUT", self.tr("Quality report"), self.tr("HTML page (*.html)")
+                "OUTPUT", tr("Quality report"), tr("HTML page (*.html)")
             ),
-            self.tr("Opens in the results viewer and in any browser."),
+            tr("Opens in the results viewer and in any browser."),
         )
         self.add(
             QgsProcessingParameterFileDestination(
                 "FIGURES",
-                self.tr("Figures of the report"),
-                self.tr("JSON (*.json)"),
+                tr("Figures of the report"),
+                tr("JSON (*.json)"),
                 optional=True,
                 createByDefault=False,
             ),
-            self.tr("All numbers of the report, for other programs."),
+            tr("All numbers of the report, for other programs."),
             advanced=True,
         )
         add_figure_outputs(self)
 
-    def checkParameterValues(self, parameters, context):
+    def refusal(self, request: Request) -> str | None:
         """Refuse levels that are no numbers."""
-        is_fine, message = super().checkParameterValues(parameters, context)
-        if not is_fine:
-            return is_fine, message
         try:
-            self._levels(parameters, context)
+            request.whole_numbers("LEVELS")
         except ValueError:
-            return False, self.tr("Levels are numbers separated by commas, such as 0,4,8.")
-        return True, ""
+            return tr("Levels are numbers separated by commas, such as 0,4,8.")
+        return super().refusal(request)
 
-    def work(self, parameters, context, feedback):
+    def work(self, request: Request) -> Values:
         """Measure, draw, write."""
         from wavelet_gis.io.atomic import new_file
         from wavelet_gis.report.page import report_page
 
-        from ..parameters.pyramid import figures
-        from ..qgis_io.crs_and_progress import progress
-
-        geo = self.geo_pyramid(parameters, context, feedback)
-        feedback.setProgressText(self.tr("Measuring and drawing"))
+        geo = self.geo_pyramid(request)
+        request.stage(tr("Measuring and drawing"))
         page, numbers = report_page(
-            geo, self._levels(parameters, context), progress(feedback, 0.1, 0.95)
+            geo, request.whole_numbers("LEVELS") or None, request.progress(0.1, 0.95)
         )
         texts = {"OUTPUT": page, "FIGURES": json.dumps(numbers, indent=1, allow_nan=False)}
-        measured = geo if geo.errors else geo.with_errors(progress(feedback, 0.95, 1.0))
+        measured = geo if geo.errors else geo.with_errors(request.progress(0.95, 1.0))
         results = figures(measured)
         for name, text in texts.items():
-            path = self.parameterAsFileOutput(parameters, name, context)
+            path = request.output_file(name)
             if not path:
                 continue
             with new_file(path, overwrite=True) as scratch:
                 scratch.write_text(text, encoding="utf-8")
             results[name] = path
-        if "OUTPUT" not in results:
-            raise QgsProcessingException(self.tr("Choose a file for the report."))
         return results
-
-    def _levels(self, parameters, context):
-        text = self.parameterAsString(parameters, "LEVELS", context).strip()
-        return [int(number) for number in text.split(",")] if text else None

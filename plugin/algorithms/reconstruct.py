@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from qgis.core import QgsProcessingOutputNumber, QgsProcessingOutputString
 
-from ..parameters.restored_output import add_restored_outputs, nothing_written, write_restored
-from ..ui import dependencies
+from ..base import Values
+from ..parameters.request import Request
+from ..parameters.restored_output import (
+    add_restored_outputs,
+    nothing_written,
+    restored_packages,
+    write_restored,
+)
+from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
+
+if TYPE_CHECKING:
+    from wavelet_gis.workflows.reconstruct import Reconstruction
+
+    from ..ui.dependencies import Package
 
 
 class Reconstruct(PyramidAlgorithm):
@@ -14,64 +28,65 @@ class Reconstruct(PyramidAlgorithm):
 
     GROUP = "reconstruction"
 
-    def name(self):
+    def name(self) -> str:
         """Return the public id."""
         return "reconstruct"
 
-    def displayName(self):
+    def displayName(self) -> str:
         """Return the name in the toolbox."""
-        return self.tr("Reconstruct")
+        return tr("Reconstruct")
 
-    def tags(self):
+    def shortDescription(self) -> str:
+        """Return what it does in one line."""
+        return tr("The DEM, point cloud or TIN that a pyramid was made from, bit for bit")
+
+    def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
-        return self.tr("synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original").split(",")
+        return tr("synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original").split(",")
 
-    def about(self):
+    def about(self) -> str:
         """Return what it does."""
-        return self.tr(
+        return tr(
             "Synthesises the finest level of a pyramid and gives back what it was made from: the "
             "DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with "
-            "its very integers, in its order, or the TIN. A filtered pyramid gives the filtered "
+            "exactly its integers, in its order, or the TIN. A filtered pyramid gives the filtered "
             "terrain. Choose the output that fits the pyramid; the others stay empty."
         )
 
-    def initAlgorithm(self, configuration=None):
+    def declare(self) -> None:
         """Declare parameters and outputs."""
         self.add_pyramid_parameter()
         add_restored_outputs(
             self,
-            self.tr("Reconstructed DEM"),
-            self.tr("Reconstructed point cloud"),
-            self.tr("Reconstructed TIN"),
+            tr("Reconstructed DEM"),
+            tr("Reconstructed point cloud"),
+            tr("Reconstructed TIN"),
         )
-        self.addOutput(QgsProcessingOutputNumber("N_VERTICES", self.tr("Number of vertices")))
-        self.addOutput(
-            QgsProcessingOutputString("EXACT", self.tr("'yes' if bit for bit the original"))
-        )
+        self.addOutput(QgsProcessingOutputNumber("N_VERTICES", tr("Number of vertices")))
+        self.addOutput(QgsProcessingOutputString("EXACT", tr("'yes' if bit for bit the original")))
 
-    def packages(self, parameters, context):
+    def packages(self, request: Request) -> tuple[Package, ...]:
         """Return laspy where a point cloud is asked for."""
-        if parameters.get("POINT_CLOUD"):
-            return dependencies.for_las(str(parameters["POINT_CLOUD"]))
-        return ()
+        return restored_packages(request)
 
-    def work(self, parameters, context, feedback):
+    def work(self, request: Request) -> Values:
         """Synthesise, restore, write what was asked for."""
-        from ..qgis_io.crs_and_progress import require_running
+        from wavelet_gis.workflows.reconstruct import reconstruct
 
-        geo = self.geo_pyramid(parameters, context, feedback)
-        feedback.setProgress(30)
-        feedback.setProgressText(self.tr("Synthesising the finest level"))
-        finest = geo.pyramid.synthesise()
-        require_running(feedback)
-        feedback.setProgress(60)
-        results = write_restored(self, parameters, context, geo, finest, feedback)
+        geo = self.geo_pyramid(request)
+        request.progress()(0.3)
+        request.stage(tr("Synthesising the finest level"))
+        restored = reconstruct(geo)
+        request.progress()(0.6)
+        request.stage(tr("Writing {}").format(restored.size))
+        results = write_restored(request, restored)
         if not results:
-            raise nothing_written(geo.source.kind)
-        return {"N_VERTICES": finest.n_vertices, "EXACT": _exactness(geo), **results}
+            raise nothing_written(geo)
+        figures = {"N_VERTICES": restored.finest.n_vertices, "EXACT": _exactness(restored)}
+        return {**figures, **results}
 
 
-def _exactness(geo) -> str:
-    if geo.source.is_exact:
+def _exactness(restored: Reconstruction) -> str:
+    if restored.is_exact:
         return "yes"
-    return "no" if geo.history else "to rounding"
+    return "no" if restored.geo.history else "to rounding"

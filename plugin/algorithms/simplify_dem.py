@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from qgis.core import (
-    QgsProcessing,
-    QgsProcessingException,
     QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterFeatureSink,
@@ -13,64 +13,82 @@ from qgis.core import (
     QgsProcessingParameterRasterDestination,
 )
 
-from ..base import TerrainWaveletsAlgorithm
-from ..parameters.analysis_options import DOUBLE, INTEGER, add_design_parameters, design_options
+from ..base import Values
+from ..parameters.analysis_options import add_design_parameters, design_options
 from ..parameters.mesh_output import add_mesh_parameter, mesh_packages
+from ..parameters.request import Request
+from ..parameters.surface_output import add_error_outputs, surface_figures, write_surface
+from ..ui.enums import POLYGONS, REAL_NUMBER, WHOLE_NUMBER
+from ..ui.exceptions import QgsProcessingException
+from ..ui.translation import tr
 from ._dem_input import DemInput
 
+if TYPE_CHECKING:
+    from wavelet_gis.model.terrain import Terrain
+
+    from ..ui.dependencies import Package
+
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
+#: Share of the vertices that stays where no rule is given.
+DEFAULT_SHARE = 0.05
 
 
-class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
+class SimplifyDem(DemInput):
     """DEM to TIN."""
 
     GROUP = "analysis"
 
-    def name(self):
+    def name(self) -> str:
         """Return the public id."""
         return "simplifydem"
 
-    def displayName(self):
+    def displayName(self) -> str:
         """Return the name in the toolbox."""
-        return self.tr("Simplify DEM")
+        return tr("Simplify DEM to TIN")
 
-    def tags(self):
+    def shortDescription(self) -> str:
+        """Return what it does in one line."""
+        return tr("DEM to the TIN or mesh of a size, or of an accuracy, with a small error")
+
+    def tags(self) -> list[str]:
         """Return the words under which the toolbox finds it."""
-        return self.tr("simplify,thin,generalise,decimate,tin,mesh,2dm,dem,level of detail").split(
-            ","
-        )
+        return tr(
+            "simplify,thin,generalise,generalize,decimate,reduce,tin,tin from dem,mesh,"
+            "mesh from dem,dem to mesh,raster to tin,2dm,dem,level of detail,lod"
+        ).split(",")
 
-    def about(self):
+    def about(self) -> str:
         """Return what it does."""
-        return self.tr(
-            "Gives the TIN of a number of vertices, or the TIN that is exact enough, with a small "
-            "error at all cells of the DEM. Say one of the three: how many vertices, the largest "
-            "error, or the root mean square error."
+        return tr(
+            "Gives the TIN of a number of vertices, or the TIN that is accurate enough, with a "
+            "small error at all cells of the DEM. Give one of three: the number of vertices, the "
+            "largest error, or the root mean square error; with none, a twentieth of the cells "
+            "become vertices."
         )
 
-    def initAlgorithm(self, configuration=None):
+    def declare(self) -> None:
         """Declare parameters and outputs."""
         self.add_dem_parameters()
         self.add(
             QgsProcessingParameterNumber(
-                "VERTICES", self.tr("Number of vertices"), INTEGER, None, True, 3
+                "VERTICES", tr("Number of vertices"), WHOLE_NUMBER, None, True, 3
             ),
-            self.tr("The TIN has exactly so many, if it can get there."),
+            tr("The TIN has exactly this many, if it can get there."),
         )
         self.add(
             QgsProcessingParameterNumber(
-                "MAX_ERROR", self.tr("Largest error"), DOUBLE, None, True, 0.0
+                "MAX_ERROR", tr("Largest error"), REAL_NUMBER, None, True, 0.0
             ),
-            self.tr("No cell is farther above or below the TIN, in the unit of elevation."),
+            tr("No cell is farther above or below the TIN, in the unit of elevation."),
         )
         self.add(
-            QgsProcessingParameterNumber("RMSE", self.tr("RMSE"), DOUBLE, None, True, 0.0),
-            self.tr("Root mean square error over all cells, in the unit of elevation."),
+            QgsProcessingParameterNumber("RMSE", tr("RMSE"), REAL_NUMBER, None, True, 0.0),
+            tr("Root mean square error over all cells, in the unit of elevation."),
         )
         add_design_parameters(self)
         self.add(
-            QgsProcessingParameterBoolean("FIT", self.tr("Fit the heights to all cells"), True),
-            self.tr(
+            QgsProcessingParameterBoolean("FIT", tr("Fit the heights to all cells"), True),
+            tr(
                 "Least squares: the smallest RMSE that these triangles can have. Without it, and "
                 "where the largest error is kept small, the heights are those of the pyramid's "
                 "coarsest level."
@@ -80,136 +98,99 @@ class SimplifyDem(DemInput, TerrainWaveletsAlgorithm):
         self.add(
             QgsProcessingParameterNumber(
                 "CELL_SIZE",
-                self.tr("Cell size of the raster"),
-                DOUBLE,
+                tr("Cell size of the raster"),
+                REAL_NUMBER,
                 None,
                 optional=True,
                 minValue=0.0,
             ),
-            self.tr("In the unit of the CRS; empty for the grid of the DEM."),
+            tr("In the unit of the CRS; empty for the grid of the DEM."),
             advanced=True,
         )
         self.add(
             QgsProcessingParameterFeatureSink(
-                "TIN",
-                self.tr("Simplified TIN"),
-                QgsProcessing.SourceType.TypeVectorPolygon,
-                optional=True,
-                createByDefault=True,
+                "TIN", tr("Simplified TIN"), POLYGONS, optional=True, createByDefault=True
             ),
-            self.tr("Triangles with mean elevation and slope (degrees)."),
+            tr("Triangles with mean elevation and slope (degrees)."),
         )
         self.add(
             QgsProcessingParameterRasterDestination(
-                "RASTER", self.tr("Raster of the TIN"), optional=True, createByDefault=False
+                "RASTER", tr("Raster of the TIN"), optional=True, createByDefault=False
             ),
-            self.tr("The TIN evaluated at the cell centres."),
+            tr("The TIN evaluated at the cell centres."),
         )
-        add_mesh_parameter(self, self.tr("Mesh of the TIN"))
+        add_mesh_parameter(self, tr("Mesh of the TIN"))
         self.add(
             QgsProcessingParameterFileDestination(
                 "OUTPUT",
-                self.tr("Pyramid"),
-                self.tr("GeoPackage (*.gpkg)"),
+                tr("Pyramid"),
+                tr("GeoPackage (*.gpkg)"),
                 optional=True,
                 createByDefault=False,
             ),
-            self.tr("The reversible pyramid whose coarsest level has the triangles of the TIN."),
+            tr("The reversible pyramid whose coarsest level has the triangles of the TIN."),
             advanced=True,
         )
-        for name, description in (
-            ("N_VERTICES", self.tr("Number of vertices")),
-            ("N_FACES", self.tr("Number of triangles")),
-            ("RMSE_SURFACE", self.tr("RMSE at all cells, in the unit of elevation")),
-            ("MAX_ERROR_SURFACE", self.tr("Largest error at all cells, in the unit of elevation")),
-        ):
-            self.addOutput(QgsProcessingOutputNumber(name, description))
+        self.addOutput(QgsProcessingOutputNumber("N_VERTICES", tr("Number of vertices")))
+        self.addOutput(QgsProcessingOutputNumber("N_FACES", tr("Number of triangles")))
+        self.addOutput(QgsProcessingOutputNumber("N_INPUT_VERTICES", tr("Cells with data")))
+        self.addOutput(QgsProcessingOutputNumber("N_LEVELS", tr("Number of levels")))
+        add_error_outputs(self, tr("at all cells"))
 
-    def checkParameterValues(self, parameters, context):
-        """Refuse anything but one rule."""
-        is_fine, message = super().checkParameterValues(parameters, context)
-        if not is_fine:
-            return is_fine, message
-        if sum(parameters.get(name) is not None for name in RULES) != 1:
-            return False, self.tr(
-                "Say one of the three: the number of vertices, the largest error, or the RMSE."
-            )
-        return True, ""
+    def refusal(self, request: Request) -> str | None:
+        """Refuse more than one rule."""
+        if sum(request.has(name) for name in RULES) > 1:
+            return tr("Give one of three: the number of vertices, the largest error, or the RMSE.")
+        return None
 
-    def packages(self, parameters, context):
+    def packages(self, request: Request) -> tuple[Package, ...]:
         """Return what writing the mesh needs."""
-        return mesh_packages(self, parameters, context)
+        return mesh_packages(request)
 
-    def work(self, parameters, context, feedback):
+    def work(self, request: Request) -> Values:
         """Read, simplify, measure, write what was asked for."""
-        from wavelet_core import analyse
-        from wavelet_core.accuracy.fitted_heights import fitted
+        from wavelet_gis.workflows.simplify import simplify
 
-        from ..parameters import mesh_output, tin_output
-        from ..parameters import pyramid as pyramids
-        from ..qgis_io.crs_and_progress import progress, require_running
+        from ..parameters.pyramid import save
 
-        terrain = self.terrain(parameters, context, feedback)
-        feedback.setProgressText(
-            self.tr("Simplifying (the first run also compiles, up to half a minute)")
-        )
-        pyramid = analyse(
-            terrain.mesh,
-            progress=progress(feedback, 0.05, 0.7),
-            **self._rule(parameters, context, terrain.frame.z_scale),
-            **design_options(self, parameters, context),
-        )
-        geo = terrain.geo_pyramid(pyramid)
-        require_running(feedback)
-        coarsest = geo.pyramid.mesh(0)
-        is_fitted = self.parameterAsBool(parameters, "FIT", context)
-        if is_fitted and pyramid.parameters["norm"] == "rms":
-            coarsest = fitted(coarsest, terrain.mesh)
-        results = {
-            "N_VERTICES": coarsest.n_vertices,
-            "N_FACES": coarsest.n_faces,
-            **self._errors(geo, coarsest, terrain),
+        terrain = self.terrain(request)
+        stages = {
+            "simplify": tr("Simplifying (the first run also compiles, up to half a minute)"),
+            "fit": tr("Fitting the heights"),
+            "errors": tr("Measuring the errors"),
         }
-        n_figures = len(results)
-        path = self.parameterAsFileOutput(parameters, "OUTPUT", context)
+        simplified = simplify(
+            terrain,
+            vertices=_vertices(request, terrain),
+            max_error=request.number("MAX_ERROR"),
+            max_rms=request.number("RMSE"),
+            fit=request.flag("FIT"),
+            progress=request.progress(0.05, 0.7),
+            on_stage=lambda name: request.stage(stages[name]),
+            **design_options(request),
+        )
+        figures = {
+            **surface_figures(simplified),
+            "N_INPUT_VERTICES": terrain.mesh.n_vertices,
+            "N_LEVELS": simplified.geo.pyramid.n_levels,
+        }
+        results: Values = {}
+        path = request.output_file("OUTPUT")
         if path:
-            measured = geo.with_errors(progress(feedback, 0.7, 0.75))
-            pyramids.save(measured, path, feedback, 0.75, 0.9)
+            request.stage(tr("Measuring the errors of every level"))
+            analysis = simplified.analysis(progress=request.progress(0.7, 0.75))
+            save(request, analysis.geo, path, 0.75, 0.9)
             results["OUTPUT"] = path
-        if parameters.get("TIN"):
-            results["TIN"] = tin_output.write_tin(
-                self, parameters, "TIN", context, geo, 0, feedback, coarsest
-            )
-        if parameters.get("RASTER"):
-            results["RASTER"] = mesh_output.write_raster(
-                self, parameters, "RASTER", context, geo, coarsest, feedback
-            )
-        if parameters.get("MESH"):
-            results["MESH"] = mesh_output.write_mesh_file(
-                self, parameters, "MESH", context, geo, coarsest
-            )
-        if len(results) == n_figures:
+        results.update(write_surface(request, simplified))
+        if not results:
             raise QgsProcessingException(
-                self.tr("No output is chosen; choose a TIN, a raster, a mesh or a pyramid.")
+                tr("No output is chosen; choose a TIN, a raster, a mesh or a pyramid.")
             )
-        return results
+        return {**figures, **results}
 
-    def _rule(self, parameters, context, z_scale):
-        if parameters.get("VERTICES") is not None:
-            return {"target_vertices": self.parameterAsInt(parameters, "VERTICES", context)}
-        if parameters.get("MAX_ERROR") is not None:
-            error = self.parameterAsDouble(parameters, "MAX_ERROR", context)
-            return {"max_error": error * z_scale}
-        return {"max_rms": self.parameterAsDouble(parameters, "RMSE", context) * z_scale}
 
-    def _errors(self, geo, coarsest, terrain):
-        import numpy as np
-
-        from wavelet_core.mesh.location import surface_errors
-
-        errors = surface_errors(coarsest, terrain.mesh.vertices) / geo.frame.z_scale
-        covered = errors[np.isfinite(errors)]
-        return {
-            "RMSE_SURFACE": float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
-            "MAX_ERROR_SURFACE": float(np.abs(covered).max(initial=0.0)),
-        }
+def _vertices(request: Request, terrain: Terrain) -> int | None:
+    """Return the number of vertices that is wanted; None where another rule is given."""
+    if any(request.has(name) for name in RULES):
+        return request.whole("VERTICES")
+    return max(round(DEFAULT_SHARE * terrain.mesh.n_vertices), 3)

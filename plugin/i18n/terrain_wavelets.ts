@@ -10,6 +10,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Checking that the input comes back</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
     <source>Coarse TIN</source>
     <translation type="unfinished"></translation>
   </message>
@@ -25,7 +30,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
-    <source>One GeoPackage with everything: the arrays from which every level is rebuilt exactly, the coarse TIN and the details of each level as styled layers.</source>
+    <source>One GeoPackage with everything: the arrays from which every level is rebuilt exactly, and the coarse TIN and the details of each level as styled layers.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -36,11 +41,6 @@
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
     <source>The triangles of the coarsest level, with elevation and slope.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_analysis.py"/>
-    <source>Writing the pyramid</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -105,12 +105,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_dem.py"/>
+    <source>DEM to a reversible pyramid of TINs with details by scale</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_dem.py"/>
     <source>Turns a DEM into a reversible wavelet pyramid: a coarse TIN and one layer of details for each level of resolution, in one GeoPackage. From it &lt;i&gt;Extract level&lt;/i&gt; gives the terrain at any level and &lt;i&gt;Reconstruct&lt;/i&gt; the DEM itself, bit for bit.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_dem.py"/>
-    <source>dem,raster,tin,pyramid,wavelet,multiresolution,level of detail</source>
+    <source>dem,dtm,raster,tin from dem,pyramid,wavelet,multiresolution,level of detail,analyze</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -160,6 +165,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>LAS, LAZ or COPC file to a reversible pyramid of TINs with details by scale</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>Names of further dimensions of the file, separated by commas.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -190,7 +200,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Triangulates the points of a LAS, LAZ or COPC file and turns them into a reversible wavelet pyramid. Attributes such as class, intensity, colour or height above ground are transformed together with the elevation. &lt;i&gt;Reconstruct&lt;/i&gt; gives the file back with its very integers.</source>
+    <source>Triangulates the points of a LAS, LAZ or COPC file and turns them into a reversible wavelet pyramid. Attributes such as class, intensity, colour or height above ground are transformed together with the elevation. &lt;i&gt;Reconstruct&lt;/i&gt; gives the file back with exactly its integers.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -205,7 +215,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>las,laz,copc,lidar,point cloud,tin,pyramid,wavelet,multiresolution</source>
+    <source>las,laz,copc,lidar,point cloud,tin,pyramid,wavelet,multiresolution,analyze</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -220,12 +230,22 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>A line that is laid on the terrain keeps only as many vertices as it needs to be nowhere farther above or below it, in the unit of elevation. Empty for the largest error where that is a stop rule, else for a thousandth of the relief.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Along breaklines and outline: RMSE {:.4g}, largest error {:.4g}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
     <source>Analyse points or TIN</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Become edges of the TIN. Where they have no Z, they lie on the TIN of the points; where they cross, they are cut.</source>
+    <source>Become edges of the TIN. Without Z they are laid on the TIN of the points, all along; with Z they keep it. Where they cross, they are cut.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -255,12 +275,22 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Keep the vertices of breaklines, and so the lines, at every level.</source>
+    <source>Keep the vertices of breaklines and of the outline, and so the lines, at every level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Lock breaklines</source>
+    <source>Largest error along breaklines and outline, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Laying lines on the terrain</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Lock breaklines and outline</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -285,7 +315,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Only the terrain inside; its outline becomes edges of the TIN.</source>
+    <source>Only the terrain inside; its outline becomes edges of the TIN and is laid on the TIN of the points.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -295,12 +325,22 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Points where it holds anything but 0, false or NULL stay at every level.</source>
+    <source>Points whose value is anything but 0, false or NULL stay at every level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>Points with Z or with a field of elevations, or polygons with Z that are all triangles. Of points at the same x and y the lowest counts.</source>
+    <source>Points with Z or with a field of elevations, or polygons with Z that are all triangles. Of points at the same x and y the lowest is taken.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Points with breaklines, or triangles, to a reversible pyramid of TINs</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>RMSE along breaklines and outline, in the unit of elevation</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -310,12 +350,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
+    <source>Tolerance along lines without Z</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_tin.py"/>
     <source>Turns a layer of points or of triangles into a reversible wavelet pyramid. Points are triangulated (Delaunay in plan), with breaklines as edges and clipped to a polygon if wanted. Locked points and the vertices of breaklines stay at every level, where they are and as high as they are.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_tin.py"/>
-    <source>tin,points,triangles,breaklines,survey,pyramid,wavelet,multiresolution</source>
+    <source>tin,points,triangles,triangulate,delaunay,breaklines,survey,pyramid,wavelet,multiresolution,analyze</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -375,11 +420,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Clustering</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Empty for a number found from the data (2 to 10).</source>
     <translation type="unfinished"></translation>
   </message>
@@ -395,7 +435,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Gathering the spectrum of each vertex</source>
+    <source>Gathering the spectrum of each vertex, and clustering</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/cluster_details.py"/>
+    <source>Gathering the spectrum of each vertex, and learning the classes</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -430,11 +475,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Learning the classes</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Map of clusters</source>
     <translation type="unfinished"></translation>
   </message>
@@ -455,7 +495,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Of samples and starts; the same seed gives the same result.</source>
+    <source>Of the random samples and starts; the same seed gives the same result.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -470,7 +510,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Predicting blocks of the map from the others</source>
+    <source>Report the accuracy</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -490,7 +530,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Tell the accuracy</source>
+    <source>Terrain grouped into clusters, or classes, by its details at each scale</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -525,7 +565,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
-    <source>A raster with one band a level: the root mean square detail around each place, in the unit of elevation. It maps at which scale the terrain is rough.</source>
+    <source>A raster with one band for each level: the root mean square detail around each place, in the unit of elevation. It maps at which scale the terrain is rough.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -605,6 +645,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>The details (wavelet coefficients) of a pyramid as points, and their energy</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>This pyramid has no level, so it has no details.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -626,11 +671,6 @@
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points the mean spacing of the level's vertices.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Largest error of the surface, in the unit of elevation</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -660,12 +700,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Points with elevation and attributes; &lt;i&gt;vertex_id&lt;/i&gt; is that of the input.</source>
+    <source>One level of a pyramid as TIN, points, raster or mesh</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>RMSE of the surface, in the unit of elevation</source>
+    <source>Points with elevation and attributes; &lt;i&gt;vertex_id&lt;/i&gt; is that of the input.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -675,7 +715,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the analysis says how large and how exact each level is.</source>
+    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the analysis says how large and how accurate each level is.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -705,7 +745,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>tin,mesh,2dm,raster,level of detail,generalise,coarse,wavelet,pyramid</source>
+    <source>of the surface</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>tin,mesh,2dm,raster,level of detail,lod,generalise,generalize,coarse,wavelet,pyramid</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -720,7 +765,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Changes chosen scales of the terrain: damps or boosts the details of each level by a gain, keeps a band of levels or of sizes on the ground, or takes out noise while banks and ridges stay. It gives the filtered pyramid and the filtered DEM, point cloud or TIN. Noise is taken out first, then gains apply.</source>
+    <source>Changes chosen scales of the terrain: damps or boosts the details of each level by a gain, keeps a band of levels or of sizes on the ground, or removes noise while banks and ridges stay. It gives the filtered pyramid and the filtered DEM, point cloud or TIN. Noise is removed first, then gains apply.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Channels to remove noise from, separated by commas: z and attributes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -790,6 +840,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Filtering</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Finest level kept</source>
     <translation type="unfinished"></translation>
   </message>
@@ -830,7 +885,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Nothing would change: take out noise, list gains, or choose levels or sizes.</source>
+    <source>Noise removed from a pyramid, or chosen scales damped, boosted or isolated</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Nothing would change: remove noise, list gains, or choose levels or sizes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -841,6 +901,11 @@
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Pyramids in random order, each denoised, whose average leaves no traces of triangles. 0 thresholds the details of this pyramid alone, which is quick.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Remove noise</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -870,22 +935,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Take out noise</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Taking out the noise</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>What the details of a level are multiplied by: 0 drops them, 0.5 halves, 2 doubles. Levels that are not listed stay. Level 0 is the coarsest.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Which to take noise from, separated by commas: z and attributes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -895,17 +945,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>denoise,smooth,sharpen,band,equaliser,filter,gain,wavelet,pyramid</source>
+    <source>denoise,smooth,sharpen,generalise,generalize,band,equaliser,filter,gain,wavelet,pyramid</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>All numbers of the report, for other programs.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>Choose a file for the report.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -925,7 +970,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>Levels to picture</source>
+    <source>Levels shown as pictures</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -950,12 +995,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
+    <source>Sizes, errors and triangle shapes of every level of a pyramid, as a web page</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>Writes one HTML page on a pyramid: sizes, errors and triangle quality of every level, curves of the RMSE, histograms of the details, hillshades of the input and of chosen levels, where the error is, and all parameters. The page needs no network.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>report,html,rmse,error,statistics,triangle quality,pyramid,wavelet</source>
+    <source>report,html,rmse,error,accuracy,statistics,triangle quality,pyramid,wavelet</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -985,7 +1035,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>Synthesises the finest level of a pyramid and gives back what it was made from: the DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with its very integers, in its order, or the TIN. A filtered pyramid gives the filtered terrain. Choose the output that fits the pyramid; the others stay empty.</source>
+    <source>Synthesises the finest level of a pyramid and gives back what it was made from: the DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with exactly its integers, in its order, or the TIN. A filtered pyramid gives the filtered terrain. Choose the output that fits the pyramid; the others stay empty.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -995,7 +1045,27 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>The DEM, point cloud or TIN that a pyramid was made from, bit for bit</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
+    <source>Writing {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/reconstruct.py"/>
     <source>synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Cells with data</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>DEM to the TIN or mesh of a size, or of an accuracy, with a small error</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1005,7 +1075,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Gives the TIN of a number of vertices, or the TIN that is exact enough, with a small error at all cells of the DEM. Say one of the three: how many vertices, the largest error, or the root mean square error.</source>
+    <source>Fitting the heights</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Give one of three: the number of vertices, the largest error, or the RMSE.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Gives the TIN of a number of vertices, or the TIN that is accurate enough, with a small error at all cells of the DEM. Give one of three: the number of vertices, the largest error, or the root mean square error; with none, a twentieth of the cells become vertices.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1020,12 +1100,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Largest error at all cells, in the unit of elevation</source>
+    <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
+    <source>Measuring the errors</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1045,12 +1125,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>RMSE</source>
+    <source>Number of levels</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>RMSE at all cells, in the unit of elevation</source>
+    <source>RMSE</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1065,17 +1145,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Say one of the three: the number of vertices, the largest error, or the RMSE.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Simplified TIN</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Simplify DEM</source>
+    <source>Simplify DEM to TIN</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1090,7 +1165,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>The TIN has exactly so many, if it can get there.</source>
+    <source>The TIN has exactly this many, if it can get there.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1100,7 +1175,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>simplify,thin,generalise,decimate,tin,mesh,2dm,dem,level of detail</source>
+    <source>at all cells</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>simplify,thin,generalise,generalize,decimate,reduce,tin,tin from dem,mesh,mesh from dem,dem to mesh,raster to tin,2dm,dem,level of detail,lod</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1145,11 +1225,6 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>&lt;i&gt;z&lt;/i&gt;: elevation and attributes, so that x and y stay and every level is a valid TIN; &lt;i&gt;xyz&lt;/i&gt;: all coordinates, as in the paper, where some triangles of a coarse level may be flipped in plan.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Attribute</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1160,32 +1235,27 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>By what the &lt;i&gt;surface&lt;/i&gt; partition judges: the root mean square (&lt;i&gt;rms&lt;/i&gt;) or the largest error (&lt;i&gt;max&lt;/i&gt;). By default the largest where that is the stop rule.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Error kept small</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>How a removed vertex is estimated from its neighbours; what is left over is its detail. By default &lt;i&gt;barycentric&lt;/i&gt; with the &lt;i&gt;surface&lt;/i&gt; partition, else &lt;i&gt;geometric&lt;/i&gt;. In the paper: &lt;i&gt;geometric&lt;/i&gt; GL, &lt;i&gt;uniform&lt;/i&gt; UG, &lt;i&gt;cotangent&lt;/i&gt; CL, &lt;i&gt;nnls&lt;/i&gt; NNLS (non-negative least squares), &lt;i&gt;least_squares&lt;/i&gt; LS (can be unstable); &lt;i&gt;barycentric&lt;/i&gt;: from the coarse triangle that now covers it; &lt;i&gt;plane&lt;/i&gt;: from the plane fitted to the neighbours.</source>
+    <source>How a removed vertex is estimated from its neighbours; what is left over is its detail. By default &lt;i&gt;barycentric&lt;/i&gt; with the &lt;i&gt;surface&lt;/i&gt; partition, else &lt;i&gt;geometric&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>How details are handed on to the vertices that stay. In the paper: &lt;i&gt;minimum_norm&lt;/i&gt; MN (keeps the weighted mean height at every level), &lt;i&gt;martinez_ortega&lt;/i&gt; MO, &lt;i&gt;one_ring_mean&lt;/i&gt; ORMP; &lt;i&gt;none&lt;/i&gt; keeps heights as they are (subsampling).</source>
+    <source>How details are passed on to the vertices that stay.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>How many steps of analysis at most (the paper's L). Each removes about a quarter of the vertices, so 12 levels leave some 2 %. Fewer come out where nothing more can go. Empty for 12, or, with a rule below, for as many as that takes.</source>
+    <source>How many steps of analysis at most (the paper's L). Each removes up to a quarter of the vertices. Fewer come out where nothing more can go. Empty for the default, or, with a rule below, for as many as that takes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>How much an attribute counts, against the elevation, in which vertices go and how they are predicted; each is scaled by its range first. 1 where it is not listed, 0 for one that is only carried along.</source>
+    <source>How much an attribute counts, compared with the elevation, in which vertices are removed and how they are predicted; each is scaled by its range first. 1 where it is not listed, 0 for one that is only carried along.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1235,12 +1305,12 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>The &lt;i&gt;surface&lt;/i&gt; partition takes at most this share of a level's vertices, between 0 and 1; empty for 0.25. A smaller share makes more levels and takes longer, and the errors are a little smaller.</source>
+    <source>The &lt;i&gt;surface&lt;/i&gt; partition removes at most this share of a level's vertices, between 0 and 1; empty for the default. A smaller share makes more levels and takes longer, and the errors are a little smaller.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>The coarsest level has exactly so many vertices, if it can get there.</source>
+    <source>The coarsest level has exactly this many vertices, if it can get there; the log says why if it cannot.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1290,7 +1360,17 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>Which vertices go at a level (the paper's odd vertices). &lt;i&gt;surface&lt;/i&gt;, the default: those that raise the vertical error at all input points least; &lt;i&gt;quadric&lt;/i&gt;: those of least cost by generalised quadric and bending energy, as in the paper; &lt;i&gt;colouring&lt;/i&gt;: regardless of shape, the paper's baseline; &lt;i&gt;random&lt;/i&gt;: in random order.</source>
+    <source>What the &lt;i&gt;surface&lt;/i&gt; partition keeps small. By default &lt;i&gt;rms&lt;/i&gt;, or &lt;i&gt;max&lt;/i&gt; where the largest error is the stop rule.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>What the wavelets transform. By default &lt;i&gt;z&lt;/i&gt;.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Which vertices are removed at a level (the paper's odd vertices). By default &lt;i&gt;surface&lt;/i&gt;, or &lt;i&gt;quadric&lt;/i&gt; with another filter than &lt;i&gt;barycentric&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1305,17 +1385,32 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/mesh_output.py"/>
-    <source>The suffix chooses the format. A 2DM mesh opens in QGIS as a mesh layer and in hydraulic models; PLY alone keeps attributes; OBJ, STL and GLB are for 3D viewers and printers; LandXML (.xml) and DXF for CAD. GLB needs the Python package trimesh, DXF ezdxf. STL and GLB hold coordinates from a local origin, which the file tells.</source>
+    <source>The suffix chooses the format:</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/mesh_output.py"/>
+    <source>coordinates count from an origin that the file names</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/mesh_output.py"/>
+    <source>keeps attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/mesh_output.py"/>
+    <source>needs the Python package {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Input points that the coarsest surface does not cover</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Largest error of the coarsest surface, in the unit of elevation</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/parameters/pyramid.py"/>
-    <source>Number of levels</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1351,6 +1446,11 @@
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Vertices of the input</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Writing the pyramid</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1391,6 +1491,21 @@
   <message>
     <location filename="../../plugin/parameters/restored_output.py"/>
     <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>Input points that the surface does not cover</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>Largest error {}, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>RMSE {}, in the unit of elevation</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1515,27 +1630,132 @@
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>
-    <source>another</source>
+    <source>the layer's properties</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/ui/wording.py"/>
-    <source>assign {} in the layer's properties</source>
+    <location filename="../../PARTITIONS"/>
+    <source>in random order, for pyramids that are averaged</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/ui/wording.py"/>
-    <source>one</source>
+    <location filename="../../PARTITIONS"/>
+    <source>in the order of their index, regardless of shape</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/ui/wording.py"/>
-    <source>one of the analyses</source>
+    <location filename="../../PARTITIONS"/>
+    <source>those of least cost by generalised quadrics and bending energy</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/ui/wording.py"/>
-    <source>the right one</source>
+    <location filename="../../PARTITIONS"/>
+    <source>those that raise the vertical errors at all input points least</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../NORMS"/>
+    <source>the largest vertical error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../NORMS"/>
+    <source>the mean square of the vertical errors</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../PREDICTIONS"/>
+    <source>cotangents of the angles opposite each edge, not below 0</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../PREDICTIONS"/>
+    <source>from the coarse triangle that now covers the vertex</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../PREDICTIONS"/>
+    <source>from the plane fitted to the neighbours; slopes have no details</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../PREDICTIONS"/>
+    <source>one over the distance in coordinates and attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../PREDICTIONS"/>
+    <source>the mean of the neighbours</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../PREDICTIONS"/>
+    <source>the non-negative weights that leave the smallest detail</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../PREDICTIONS"/>
+    <source>the same with weights of any sign; can be unstable</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../UPDATES"/>
+    <source>half the mean detail of the odd neighbours, by their prediction weights</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../UPDATES"/>
+    <source>keeps the mean of each removed vertex's ring</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../UPDATES"/>
+    <source>keeps the weighted mean height at every level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../UPDATES"/>
+    <source>the vertices that stay keep their heights (subsampling)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../SIGNALS"/>
+    <source>all coordinates, as in the paper; coarse faces may be flipped in plan</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../SIGNALS"/>
+    <source>elevation and attributes; every level is a valid TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>3D printers</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>3D software</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>3D viewers, web pages</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>CAD</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>CAD, machine control</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>QGIS (as a mesh layer), hydraulic models</source>
     <translation type="unfinished"></translation>
   </message>
 </context>

@@ -2,94 +2,101 @@
 
 from __future__ import annotations
 
+import html
 import os
+from typing import TYPE_CHECKING
 
-from qgis.core import (
-    QgsProcessingContext,
-    QgsProcessingParameterFileDestination,
-    QgsProcessingUtils,
-)
+from qgis.core import QgsProcessingContext, QgsProcessingParameterFileDestination
 
 from ..ui import dependencies
 from ..ui import layer_styles as styles
+from ..ui.enums import MESH_LAYER
 from ..ui.translation import tr
-from .pyramid import cell_size, crs_of
+from .pyramid import crs_of
 
-#: Suffixes of mesh files and what their formats are called, the default first; those of
-#: ``wavelet_gis.io.meshes``, which a test compares.
-FORMATS = {
-    ".2dm": "2DM",
-    ".ply": "PLY",
-    ".obj": "OBJ",
-    ".stl": "STL",
-    ".glb": "GLB",
-    ".xml": "LandXML",
-    ".dxf": "DXF",
-}
-#: What a format needs beyond numpy.
-PACKAGES = {".glb": (dependencies.TRIMESH,), ".dxf": (dependencies.EZDXF,)}
+if TYPE_CHECKING:
+    from wavelet_gis.io.formats import MeshFormat
+    from wavelet_gis.workflows.extract import Surface
+
+    from ..base import TerrainWaveletsAlgorithm
+    from .request import Request
+
+#: What a dialog offers first, because it opens in QGIS.
+DEFAULT_SUFFIX = ".2dm"
 
 
-def add_mesh_parameter(algorithm, description) -> None:
-    """Declare MESH, a file in one of the formats."""
+def add_mesh_parameter(algorithm: TerrainWaveletsAlgorithm, description: str) -> None:
+    """Declare MESH, a file in one of the formats of ``wavelet_gis.io.formats``."""
+    from wavelet_gis.io.formats import MESH_FORMATS
+
+    rows = sorted(MESH_FORMATS, key=lambda row: row.suffix != DEFAULT_SUFFIX)
     algorithm.add(
         QgsProcessingParameterFileDestination(
             "MESH",
             description,
-            ";;".join(f"{name} (*{suffix})" for suffix, name in FORMATS.items()),
+            ";;".join(f"{row.name} (*{row.suffix})" for row in rows),
             optional=True,
             createByDefault=False,
         ),
-        tr(
-            "The suffix chooses the format. A 2DM mesh opens in QGIS as a mesh layer and in "
-            "hydraulic models; PLY alone keeps attributes; OBJ, STL and GLB are for 3D viewers and "
-            "printers; LandXML (.xml) and DXF for CAD. GLB needs the Python package trimesh, DXF "
-            "ezdxf. STL and GLB hold coordinates from a local origin, which the file tells."
-        ),
+        tr("The suffix chooses the format:") + "".join(f"<br>{_format_help(row)}" for row in rows),
     )
 
 
-def mesh_packages(algorithm, parameters, context) -> tuple[dependencies.Package, ...]:
-    """Return what the format of MESH needs beyond numpy."""
-    path = algorithm.parameterAsFileOutput(parameters, "MESH", context)
-    return PACKAGES.get(_suffix(path), ())
+def _format_help(row: MeshFormat) -> str:
+    """Return one mesh format as a line: its suffix, what opens it, what it needs and keeps."""
+    facts = [html.escape(tr(row.used_by), quote=False)]
+    if row.package:
+        facts.append(tr("needs the Python package {}").format(row.package))
+    if row.keeps_attributes:
+        facts.append(tr("keeps attributes"))
+    if row.has_local_origin:
+        facts.append(tr("coordinates count from an origin that the file names"))
+    return f"<i>{row.suffix}</i> {row.name}: {'; '.join(facts)}"
 
 
-def write_raster(algorithm, parameters, name, context, geo, mesh, feedback) -> str:
-    """Write a mesh of the pyramid (in the working frame) as a raster and return its path.
+def mesh_packages(request: Request) -> tuple[dependencies.Package, ...]:
+    """Return what the format of MESH needs beyond NumPy."""
+    from wavelet_gis.io.formats import mesh_format
 
-    The grid is that of the DEM the pyramid came from, or, with CELL_SIZE, one over the mesh.
+    row = mesh_format(request.output_file("MESH"))
+    return () if row is None or row.package is None else (dependencies.named(row.package),)
+
+
+def write_raster(request: Request, name: str, surface: Surface) -> str:
+    """Write a surface as a raster and return its path.
+
+    The grid is that of the DEM the pyramid came from, or, with CELL_SIZE, one over the surface.
     """
     from wavelet_gis.products.level_raster import surface_dem
 
     from ..qgis_io.raster_writer import write_dem
 
-    path = algorithm.parameterAsOutputLayer(parameters, name, context)
-    size = cell_size(algorithm, parameters, context)
-    write_dem(path, surface_dem(geo, mesh, cell_size=size), crs_of(geo), feedback)
-    styles.style_output(context, path, styles.style_hillshade)
+    path = request.output_layer(name)
+    dem = surface_dem(surface.geo, surface.mesh, cell_size=request.size("CELL_SIZE"))
+    write_dem(path, dem, crs_of(surface.geo), request.feedback)
+    styles.style_output(request.context, path, styles.style_hillshade)
     return path
 
 
-def write_mesh_file(algorithm, parameters, name, context, geo, mesh) -> str:
-    """Write a mesh of the pyramid as a mesh file; a 2DM opens as a layer if there is a project."""
+def write_mesh_file(request: Request, name: str, surface: Surface) -> str:
+    """Write a surface as a mesh file; a 2DM opens as a layer if there is a project."""
     from wavelet_gis.io.atomic import new_file
-    from wavelet_gis.io.meshes import write_mesh
+    from wavelet_gis.io.formats import suffix_of
 
-    path = algorithm.parameterAsFileOutput(parameters, name, context)
+    path = request.output_file(name)
     with new_file(path, overwrite=True) as scratch:
-        write_mesh(scratch, geo.file_mesh(mesh), geo.system.wkt)
-    if _suffix(path) == ".2dm" and context.project() is not None:
-        details = QgsProcessingContext.LayerDetails(
-            os.path.splitext(os.path.basename(path))[0],
-            context.project(),
-            name,
-            QgsProcessingUtils.LayerHint.Mesh,
-        )
-        context.addLayerToLoadOnCompletion(path, details)
-        styles.style_output(context, path, styles.set_mesh_crs)
+        surface.write(scratch)
+    project = request.context.project()
+    if suffix_of(path) == ".2dm" and project is not None:
+        title = _title_of(request, name, path)
+        details = QgsProcessingContext.LayerDetails(title, project, name, MESH_LAYER)
+        request.context.addLayerToLoadOnCompletion(path, details)
+        styles.style_output(request.context, path, styles.set_mesh_crs)
     return path
 
 
-def _suffix(path: str) -> str:
-    return os.path.splitext(path)[1].lower()
+def _title_of(request: Request, name: str, path: str) -> str:
+    """Return the name of a mesh layer: the file's, or, of a temporary one, the output's."""
+    definition = request.algorithm.parameterDefinition(name)
+    stem = os.path.splitext(os.path.basename(path))[0]
+    return definition.description() if definition is not None and stem == name else stem

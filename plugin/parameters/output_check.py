@@ -4,11 +4,25 @@ from __future__ import annotations
 
 import os
 import re
+from typing import TYPE_CHECKING, Any
 
-from qgis.core import QgsProcessing, QgsProcessingOutputLayerDefinition
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterFileDestination,
+)
+
+if TYPE_CHECKING:
+    from qgis.core import (
+        QgsProcessingAlgorithm,
+        QgsProcessingContext,
+        QgsProcessingParameterDefinition,
+    )
 
 
-def check_outputs(algorithm, parameters, context) -> None:
+def check_outputs(
+    algorithm: QgsProcessingAlgorithm, parameters: dict[str, Any], context: QgsProcessingContext
+) -> None:
     """Refuse an output that cannot be written, or that is the input itself.
 
     Call it in the thread that the layers live in.
@@ -23,13 +37,13 @@ def check_outputs(algorithm, parameters, context) -> None:
     for definition in algorithm.destinationParameterDefinitions():
         path = _chosen_file(definition, parameters.get(definition.name()))
         if path is not None:
-            suffixes = ()
-            if definition.type() == "fileDestination":
+            suffixes: tuple[str, ...] = ()
+            if isinstance(definition, QgsProcessingParameterFileDestination):
                 suffixes = tuple(re.findall(r"\*(\.\w+)", definition.fileFilter()))
             check_output(path, overwrite=True, suffixes=suffixes, inputs=inputs)
 
 
-def _chosen_file(definition, value) -> str | None:
+def _chosen_file(definition: QgsProcessingParameterDefinition, value: Any) -> str | None:
     """Return the path that a user chose; None for what is temporary or goes into a database."""
     if isinstance(value, QgsProcessingOutputLayerDefinition):
         value = value.sink.staticValue()
@@ -39,7 +53,9 @@ def _chosen_file(definition, value) -> str | None:
     return value if definition.type() != "sink" or os.path.isabs(value) else None
 
 
-def _input_files(algorithm, parameters, context) -> tuple[str, ...]:
+def _input_files(
+    algorithm: QgsProcessingAlgorithm, parameters: dict[str, Any], context: QgsProcessingContext
+) -> tuple[str, ...]:
     """Return the files that are read; those that are in use by a layer too."""
     files = []
     for definition in algorithm.parameterDefinitions():
@@ -47,8 +63,8 @@ def _input_files(algorithm, parameters, context) -> tuple[str, ...]:
         if kind == "file":
             files.append(algorithm.parameterAsString(parameters, name, context))
         elif kind == "raster":
-            layer = algorithm.parameterAsRasterLayer(parameters, name, context)
-            files.append(layer.source() if layer else "")
+            raster = algorithm.parameterAsRasterLayer(parameters, name, context)
+            files.append(raster.source() if raster else "")
         elif kind == "source":
             layer = algorithm.parameterAsVectorLayer(parameters, name, context)
             files.append(layer.source() if layer else "")

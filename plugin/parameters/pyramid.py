@@ -1,64 +1,65 @@
-"""Pyramid files in and out, and what algorithms say of them in numbers."""
+"""Pyramid files in and out, and what algorithms say of them in figures."""
 
 from __future__ import annotations
 
-import os
 from itertools import chain
+from typing import TYPE_CHECKING, Any
 
-from qgis.core import (
-    QgsCoordinateReferenceSystem,
-    QgsProcessingException,
-    QgsProcessingOutputNumber,
-)
+from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingOutputNumber
 
-from ..qgis_io.crs_and_progress import is_geocentric, progress
+from ..qgis_io.crs_and_progress import is_geocentric
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 
+if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
 
-def load(path: str):
-    """Return the ``GeoPyramid`` in a pyramid file."""
-    from wavelet_gis.io.pyramid_file import read_pyramid
-
-    # A layer of the file may have been handed on by a model, as 'file.gpkg|layername=coarse_tin'.
-    return read_pyramid(path.split("|")[0])
+    from ..base import TerrainWaveletsAlgorithm
+    from .request import Request
 
 
-def save(geo, path: str, feedback, start: float, stop: float) -> None:
-    """Write a pyramid with its layers as a GeoPackage, whole or not at all; it replaces another."""
+def save(request: Request, geo: GeoPyramid, path: str, start: float, stop: float) -> None:
+    """Write a pyramid with its layers as a GeoPackage, whole or not at all; it replaces another.
+
+    Parameters
+    ----------
+    request : Request
+        Shows the progress.
+    geo : GeoPyramid
+        What to write.
+    path : str
+        Where to.
+    start, stop : float
+        The part of the whole work that this is.
+    """
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.pyramid_file import write_pyramid
     from wavelet_gis.products.layers import coarse_layers, detail_layers
 
     from ..qgis_io.geopackage import add_layers
 
+    request.stage(tr("Writing the pyramid"))
     middle = (start + stop) / 2
     with new_file(path, overwrite=True) as scratch:
-        write_pyramid(scratch, geo, progress(feedback, start, middle))
+        write_pyramid(scratch, geo, request.progress(start, middle))
         layers = chain(coarse_layers(geo), detail_layers(geo))
-        add_layers(scratch, layers, layer_wkt(geo), feedback)
-    progress(feedback, middle, stop)(1.0)
+        add_layers(scratch, layers, layer_wkt(geo), request.feedback)
+    request.progress(middle, stop)(1.0)
 
 
-def crs_of(geo) -> QgsCoordinateReferenceSystem:
+def crs_of(geo: GeoPyramid) -> QgsCoordinateReferenceSystem:
     """Return the CRS of a pyramid's input; an invalid one where it had none."""
     wkt = layer_wkt(geo)
     return QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
 
 
-def layer_wkt(geo) -> str | None:
+def layer_wkt(geo: GeoPyramid) -> str | None:
     """Return the CRS for layers; None also for a geocentric one, in which no map is drawn."""
     wkt = geo.system.wkt
     return None if wkt is None or is_geocentric(wkt) else wkt
 
 
-def cell_size(algorithm, parameters, context):
-    """Return the parameter CELL_SIZE, or None where it is empty or 0."""
-    if parameters.get("CELL_SIZE") is None:
-        return None
-    return algorithm.parameterAsDouble(parameters, "CELL_SIZE", context) or None
-
-
-def checked_level(geo, level: int) -> int:
+def checked_level(geo: GeoPyramid, level: int) -> int:
     """Return a level that the pyramid has.
 
     Raises
@@ -76,7 +77,7 @@ def checked_level(geo, level: int) -> int:
     return level
 
 
-def add_figure_outputs(algorithm) -> None:
+def add_figure_outputs(algorithm: TerrainWaveletsAlgorithm) -> None:
     """Declare the numbers that `figures` returns."""
     for name, description in (
         ("N_LEVELS", tr("Number of levels")),
@@ -93,13 +94,16 @@ def add_figure_outputs(algorithm) -> None:
             tr("Largest error of the coarsest surface, in the unit of elevation"),
         ),
         ("RMSE_COEFFICIENTS", tr("RMSE of the coefficients at the coarsest level (no unit)")),
+        ("N_UNCOVERED", tr("Input points that the coarsest surface does not cover")),
     ):
         algorithm.addOutput(QgsProcessingOutputNumber(name, description))
 
 
-def figures(geo) -> dict:
-    """Return sizes and errors of a pyramid whose errors have been computed."""
-    finest, coarsest = geo.errors[0], geo.errors[-1]
+def figures(geo: GeoPyramid) -> dict[str, Any]:
+    """Return sizes and errors of a pyramid whose errors have been measured."""
+    coarsest, finest = geo.errors_at(0), geo.errors_at(geo.pyramid.n_levels)
+    assert coarsest is not None
+    assert finest is not None
     return {
         "N_LEVELS": geo.pyramid.n_levels,
         "N_VERTICES": finest.n_vertices,
@@ -109,30 +113,15 @@ def figures(geo) -> dict:
         "RMSE_SURFACE": coarsest.rmse_surface,
         "MAX_ERROR_SURFACE": coarsest.max_error_surface,
         "RMSE_COEFFICIENTS": coarsest.rmse_coefficients,
+        "N_UNCOVERED": coarsest.n_uncovered,
     }
 
 
-def level_figures(geo, level: int) -> dict:
-    """Return the errors of a level as the file tells them; empty where it does not."""
-    for errors in geo.errors or ():
-        if errors.level == level:
-            return {
-                "RMSE_SURFACE": errors.rmse_surface,
-                "MAX_ERROR_SURFACE": errors.max_error_surface,
-            }
-    return {}
-
-
-def log_levels(geo, feedback) -> None:
+def log_levels(request: Request, geo: GeoPyramid) -> None:
     """Write the table of levels to the log."""
-    feedback.pushInfo(tr("level   vertices  triangles  RMSE of surface  largest error"))
-    for errors in geo.errors:
-        feedback.pushInfo(
+    request.say(tr("level   vertices  triangles  RMSE of surface  largest error"))
+    for errors in geo.errors or ():
+        request.say(
             f"{errors.level:5d} {errors.n_vertices:10d} {errors.n_faces:10d} "
             f"{errors.rmse_surface:16.4f} {errors.max_error_surface:14.4f}"
         )
-
-
-def default_name(path: str) -> str:
-    """Return the file's name without folder and suffix."""
-    return os.path.splitext(os.path.basename(path))[0]

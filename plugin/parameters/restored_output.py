@@ -2,18 +2,31 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from qgis.core import (
-    QgsProcessing,
-    QgsProcessingException,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterRasterDestination,
 )
 
+from ..ui import dependencies
+from ..ui.enums import POLYGONS
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
+from .pyramid import crs_of
+
+if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
+    from wavelet_gis.workflows.reconstruct import Reconstruction
+
+    from ..base import TerrainWaveletsAlgorithm
+    from .request import Request
 
 
-def add_restored_outputs(algorithm, dem_name, cloud_name, tin_name) -> None:
+def add_restored_outputs(
+    algorithm: TerrainWaveletsAlgorithm, dem_name: str, cloud_name: str, tin_name: str
+) -> None:
     """Declare DEM, POINT_CLOUD and TIN, of which the one that fits the pyramid is written."""
     algorithm.add(
         QgsProcessingParameterRasterDestination(
@@ -33,83 +46,70 @@ def add_restored_outputs(algorithm, dem_name, cloud_name, tin_name) -> None:
     )
     algorithm.add(
         QgsProcessingParameterFeatureSink(
-            "TIN",
-            tin_name,
-            QgsProcessing.SourceType.TypeVectorPolygon,
-            optional=True,
-            createByDefault=False,
+            "TIN", tin_name, POLYGONS, optional=True, createByDefault=False
         ),
         tr("The triangles of the finest level, for a pyramid of any kind."),
     )
 
 
-def write_restored(algorithm, parameters, context, geo, finest, feedback) -> dict:
-    """Write what was asked for and fits the pyramid.
+def restored_packages(request: Request) -> tuple[dependencies.Package, ...]:
+    """Return what writing the point cloud needs, where one is wanted."""
+    if not request.has("POINT_CLOUD"):
+        return ()
+    return dependencies.for_las(request.output_file("POINT_CLOUD"))
 
-    Parameters
-    ----------
-    algorithm : TerrainWaveletsAlgorithm
-    parameters : dict
-    context : QgsProcessingContext
-    geo : GeoPyramid
-    finest : TriangleMesh
-        Its finest level.
-    feedback : QgsProcessingFeedback
 
-    Returns
-    -------
-    dict
-        The outputs that were written, by name.
-    """
+def write_restored(request: Request, restored: Reconstruction) -> dict[str, Any]:
+    """Write what was asked for and fits the pyramid; return where it is, by the output's name."""
     from . import tin_output
 
     results = {}
-    if geo.source.kind == "raster":
-        results.update(_write_dem(algorithm, parameters, context, geo, finest, feedback))
-    elif geo.source.kind == "points":
-        results.update(_write_cloud(algorithm, parameters, context, geo, finest))
-    if parameters.get("TIN"):
-        results["TIN"] = tin_output.write_tin(
-            algorithm, parameters, "TIN", context, geo, geo.pyramid.n_levels, feedback
-        )
+    write = {"raster": _write_dem, "points": _write_cloud, "tin": _write_nothing_more}
+    results.update(write[restored.geo.origin.kind](request, restored))
+    if request.has("TIN"):
+        level = restored.geo.pyramid.n_levels
+        results["TIN"] = tin_output.write_level(request, "TIN", restored.geo, level)
     return results
 
 
-def nothing_written(kind: str) -> QgsProcessingException:
+def nothing_written(geo: GeoPyramid) -> QgsProcessingException:
     """Return what to tell a user who chose no output that fits the pyramid."""
-    if kind == "raster":
-        text = tr("This pyramid was made from a DEM; choose where the DEM goes.")
-    elif kind == "points":
-        text = tr(
+    texts = {
+        "raster": tr("This pyramid was made from a DEM; choose where the DEM goes."),
+        "points": tr(
             "This pyramid was made from a point cloud; choose a file for the point cloud, or take "
             "the TIN."
-        )
-    else:
-        text = tr("This pyramid was made from a TIN; choose where the TIN goes.")
-    return QgsProcessingException(text)
+        ),
+        "tin": tr("This pyramid was made from a TIN; choose where the TIN goes."),
+    }
+    return QgsProcessingException(texts[geo.origin.kind])
 
 
-def _write_dem(algorithm, parameters, context, geo, finest, feedback) -> dict:
-    from ..qgis_io import raster_writer as raster_output
+def _write_dem(request: Request, restored: Reconstruction) -> dict[str, Any]:
+    from wavelet_gis.model.dem import Dem
+
+    from ..qgis_io.raster_writer import write_dem
     from ..ui import layer_styles as styles
-    from .pyramid import crs_of
 
-    path = algorithm.parameterAsOutputLayer(parameters, "DEM", context)
+    path = request.output_layer("DEM")
     if not path:
         return {}
-    dem = geo.source.restore(finest, geo.frame)
-    raster_output.write_dem(path, dem, crs_of(geo), feedback)
-    styles.style_output(context, path, styles.style_hillshade)
+    assert isinstance(restored.original, Dem)
+    write_dem(path, restored.original, crs_of(restored.geo), request.feedback)
+    styles.style_output(request.context, path, styles.style_hillshade)
     return {"DEM": path}
 
 
-def _write_cloud(algorithm, parameters, context, geo, finest) -> dict:
-    from wavelet_gis.io.atomic import new_file
-    from wavelet_gis.io.las import write_cloud
+def _write_cloud(request: Request, restored: Reconstruction) -> dict[str, Any]:
+    from wavelet_gis.workflows.save import save
 
-    path = algorithm.parameterAsFileOutput(parameters, "POINT_CLOUD", context)
+    path = request.output_file("POINT_CLOUD")
     if not path:
         return {}
-    with new_file(path, overwrite=True) as scratch:
-        write_cloud(scratch, geo.source.restore(finest, geo.frame))
+    save(restored, path, overwrite=True)
     return {"POINT_CLOUD": path}
+
+
+def _write_nothing_more(request: Request, restored: Reconstruction) -> dict[str, Any]:
+    """Return nothing: a TIN goes to the output TIN, which any pyramid has."""
+    return {}

@@ -3,54 +3,65 @@
 from __future__ import annotations
 
 from functools import partial
-
-from qgis.core import QgsProcessingException
+from typing import TYPE_CHECKING
 
 from ..qgis_io import vectors
 from ..ui import layer_styles as styles
+from ..ui.exceptions import QgsProcessingException
 from .pyramid import crs_of
 
+if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
+    from wavelet_gis.products.layers import Layer
+    from wavelet_gis.workflows.extract import Surface
 
-def write_tin(algorithm, parameters, name, context, geo, level, feedback, mesh=None) -> str:
-    """Write the triangles of a level to the sink ``name`` and return where they are.
-
-    ``mesh`` is the level with other heights, if they were fitted.
-    """
-    tin, _ = _level_layers(geo, level) if mesh is None else _layers_of(geo, level, mesh)
-    destination = write_layer(algorithm, parameters, name, context, geo, tin, feedback)
-    styles.style_output(context, destination, partial(styles.apply_qml, qml=tin.style))
-    return destination
+    from .request import Request
 
 
-def write_vertices(algorithm, parameters, name, context, geo, level, feedback) -> str:
-    """Write the vertices of a level, with their attributes, to the sink ``name``."""
-    _, vertices = _level_layers(geo, level)
-    return write_layer(algorithm, parameters, name, context, geo, vertices, feedback)
-
-
-def _level_layers(geo, level):
+def write_level(request: Request, name: str, geo: GeoPyramid, level: int) -> str:
+    """Write the triangles of a level to the sink ``name`` and return where they are."""
     from wavelet_gis.products.layers import coarse_layers
 
-    return coarse_layers(geo, level)
+    tin, _ = coarse_layers(geo, level)
+    return write_layer(request, name, geo, tin)
 
 
-def _layers_of(geo, level, mesh):
+def write_surface(
+    request: Request, surface: Surface, tin: str = "TIN", vertices: str = "VERTICES"
+) -> dict[str, str]:
+    """Write the triangles and the vertices of a surface, each where it is wanted.
+
+    Parameters
+    ----------
+    request : Request
+        What was asked for.
+    surface : Surface
+        A level of a pyramid, or what lies between two, with its heights.
+    tin, vertices : str
+        Names of the sinks.
+    """
     from wavelet_gis.products.layers import tin_layers
 
-    return tin_layers(geo, mesh, geo.pyramid.vertex_ids(level))
+    results = {}
+    layers = tin_layers(surface.geo, surface.mesh, surface.vertex_ids)
+    for name, layer in zip((tin, vertices), layers, strict=True):
+        if request.has(name):
+            results[name] = write_layer(request, name, surface.geo, layer)
+    return results
 
 
-def write_layer(algorithm, parameters, name, context, geo, layer, feedback) -> str:
-    """Write a ``wavelet_gis.products.layers.Layer`` to the sink ``name`` and return where it is."""
-    sink, destination = algorithm.parameterAsSink(
-        parameters,
+def write_layer(request: Request, name: str, geo: GeoPyramid, layer: Layer) -> str:
+    """Write a layer, with its style, to the sink ``name`` and return where it is."""
+    sink, destination = request.algorithm.parameterAsSink(
+        request.parameters,
         name,
-        context,
+        request.context,
         vectors.fields_of(layer),
         vectors.wkb_type_of(layer),
         crs_of(geo),
     )
     if sink is None:
-        raise QgsProcessingException(algorithm.invalidSinkError(parameters, name))
-    vectors.add_layer(sink, layer, feedback)
+        raise QgsProcessingException(request.algorithm.invalidSinkError(request.parameters, name))
+    vectors.add_layer(sink, layer, request.feedback)
+    styles.style_output(request.context, destination, partial(styles.apply_qml, qml=layer.style))
     return destination

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from qgis.core import (
-    QgsGeometry,
-    QgsPoint,
-    QgsProcessingException,
-    QgsWkbTypes,
-)
+from numpy.typing import NDArray
+from qgis.core import QgsGeometry, QgsWkbTypes
 
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
+from .geometry import inside
 from .vectors import features_in
+
+if TYPE_CHECKING:
+    from qgis.core import (
+        QgsCoordinateReferenceSystem,
+        QgsCoordinateTransformContext,
+        QgsProcessingFeatureSource,
+        QgsProcessingFeedback,
+    )
+
+#: z of a corner by its x and y.
+Heights = dict[tuple[float, float], float]
 
 
 class Constraints(NamedTuple):
@@ -24,23 +33,17 @@ class Constraints(NamedTuple):
     clip : QgsGeometry or None
     """
 
-    breaklines: list
-    outline: list
+    breaklines: list[NDArray[np.float64]]
+    outline: list[NDArray[np.float64]]
     clip: QgsGeometry | None
 
-    def contains(self, positions) -> np.ndarray:
+    def contains(self, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Return which of ``(m, 2)`` positions are inside the clip polygon."""
         if self.clip is None:
             return np.ones(len(positions), dtype=bool)
-        engine = QgsGeometry.createGeometryEngine(self.clip.constGet())
-        engine.prepareGeometry()
-        return np.fromiter(
-            (engine.contains(QgsPoint(x, y)) for x, y in positions.tolist()),
-            dtype=bool,
-            count=len(positions),
-        )
+        return inside(self.clip, positions)
 
-    def meets(self, positions) -> bool:
+    def meets(self, positions: NDArray[np.float64]) -> bool:
         """Return whether a breakline reaches into the rectangle around positions."""
         low, high = positions[:, :2].min(axis=0), positions[:, :2].max(axis=0)
         return any(
@@ -50,7 +53,11 @@ class Constraints(NamedTuple):
 
 
 def read_constraints(
-    breakline_source, clip_source, crs, transform_context, feedback
+    breakline_source: QgsProcessingFeatureSource | None,
+    clip_source: QgsProcessingFeatureSource | None,
+    crs: QgsCoordinateReferenceSystem,
+    transform_context: QgsCoordinateTransformContext,
+    feedback: QgsProcessingFeedback,
 ) -> Constraints:
     """Return the lines of two sources in a CRS, cut where they cross.
 
@@ -72,7 +79,8 @@ def read_constraints(
                     "{}: there is no polygon to clip by; check the layer, its filter and selection."
                 ).format(clip_source.sourceName())
             )
-    heights = _heights(lines) if lines and QgsWkbTypes.hasZ(breakline_source.wkbType()) else None
+    has_z = breakline_source is not None and QgsWkbTypes.hasZ(breakline_source.wkbType())
+    heights = _heights(lines) if has_z else None
     noded = QgsGeometry.unaryUnion(lines) if lines else QgsGeometry()
     rings = _rings(clip)
     if clip is not None and lines:
@@ -97,17 +105,23 @@ def read_constraints(
     )
 
 
-def _geometries(source, crs, transform_context, feedback) -> list:
+def _geometries(
+    source: QgsProcessingFeatureSource | None,
+    crs: QgsCoordinateReferenceSystem,
+    transform_context: QgsCoordinateTransformContext,
+    feedback: QgsProcessingFeedback,
+) -> list[QgsGeometry]:
     if source is None:
         return []
     features = features_in(source, crs, transform_context, feedback)
     return [QgsGeometry(feature.geometry()) for feature in features]
 
 
-def _rings(clip) -> list:
+def _rings(clip: QgsGeometry | None) -> list[QgsGeometry]:
     if clip is None:
         return []
     rings = []
+    part: Any  # of a polygon layer, a polygon
     for part in clip.constParts():
         curves = [part.exteriorRing()]
         curves += [part.interiorRing(k) for k in range(part.numInteriorRings())]
@@ -115,11 +129,11 @@ def _rings(clip) -> list:
     return rings
 
 
-def _heights(lines) -> dict:
+def _heights(lines: list[QgsGeometry]) -> Heights:
     return {(p.x(), p.y()): p.z() for line in lines for p in line.vertices() if p.is3D()}
 
 
-def _array(line, heights) -> np.ndarray:
+def _array(line: QgsGeometry, heights: Heights | None) -> NDArray[np.float64]:
     """Return the corners; z as the lines had it, between their corners as GEOS interpolated it."""
     rows = []
     for p in line.vertices():
@@ -130,6 +144,6 @@ def _array(line, heights) -> np.ndarray:
     return np.array(rows, dtype=np.float64).reshape(len(rows), 3)
 
 
-def _extent(geometry) -> float:
+def _extent(geometry: QgsGeometry) -> float:
     box = geometry.boundingBox()
     return max(box.width(), box.height(), abs(box.xMaximum()), abs(box.yMaximum()))

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Literal
+
 from osgeo import osr
 from qgis.core import QgsCoordinateReferenceSystem
 
+from ..ui.enums import WKT_FOR_GDAL
 
-def progress(feedback, start: float = 0.0, stop: float = 1.0):
+if TYPE_CHECKING:
+    from qgis.core import QgsFeedback
+
+    from wavelet_gis.crs.frame import CoordinateSystem
+
+
+def progress(
+    feedback: QgsFeedback, start: float = 0.0, stop: float = 1.0
+) -> Callable[[float], bool]:
     """Return a progress function for the core that drives a part of QGIS's bar.
 
     Parameters
     ----------
-    feedback : QgsProcessingFeedback
+    feedback : QgsFeedback
         Shows the progress and holds the cancel button.
     start, stop : float
         The part of the whole work that this step is.
@@ -29,7 +41,7 @@ def progress(feedback, start: float = 0.0, stop: float = 1.0):
     return report
 
 
-def require_running(feedback) -> None:
+def require_running(feedback: QgsFeedback) -> None:
     """Stop here if the user has cancelled.
 
     Raises
@@ -42,15 +54,16 @@ def require_running(feedback) -> None:
         raise Cancelled("cancelled by the user")
 
 
-def coordinate_system(crs: QgsCoordinateReferenceSystem):
+def coordinate_system(crs: QgsCoordinateReferenceSystem) -> CoordinateSystem:
     """Return the ``CoordinateSystem`` of a QGIS CRS; an invalid one is no CRS."""
     from wavelet_gis.crs.frame import CoordinateSystem
 
     if not crs.isValid():
         return CoordinateSystem()
-    wkt = crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL)
+    wkt = crs.toWkt(WKT_FOR_GDAL)
     name = crs.description() or crs.authid()
     system = _spatial_reference(wkt)
+    kind: Literal["geographic", "projected"]
     if system.IsGeographic():
         kind, unit = "geographic", system.GetAngularUnits()
     elif system.IsProjected():
@@ -73,7 +86,7 @@ def is_geocentric(wkt: str) -> bool:
     return bool(_spatial_reference(wkt).IsGeocentric())
 
 
-def _spatial_reference(wkt: str):
+def _spatial_reference(wkt: str) -> Any:
     """Return GDAL's view of a CRS; one that it does not understand is of no kind."""
     try:
         system = osr.SpatialReference()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from typing import Any
 
 
 @contextmanager
-def without_exceptions(module, refusal):
+def without_exceptions(module: Any, refusal: Callable[[str], Exception]) -> Iterator[None]:
     """Keep ``gdal``, ``osr`` or ``ogr`` from raising in the block: they return None or a code.
 
     Which of the two GDAL does is a setting of the whole process, which Processing and other plugins
@@ -30,7 +32,7 @@ def without_exceptions(module, refusal):
             raise refusal(str(error)) from error
 
 
-def opened(gdal, path: str):
+def opened(gdal: Any, path: str) -> Any:
     """Return the dataset at a path, or None where GDAL cannot open it."""
     try:
         return gdal.Open(path)

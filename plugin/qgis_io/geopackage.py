@@ -7,23 +7,34 @@ CRS entry and the spatial index, so that the file is what it would be.
 
 from __future__ import annotations
 
+import os
 import struct
+from collections.abc import Iterable
 from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from osgeo import gdal, ogr, osr
-from qgis.core import QgsProcessingException
 
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from .crs_and_progress import require_running
 from .gdal_errors import without_exceptions
+
+if TYPE_CHECKING:
+    from qgis.core import QgsFeedback
+
+    from wavelet_gis.products.layers import Layer
+
+Path = str | os.PathLike[str]
 
 _GEOMETRY_TYPES = {"Point Z": ogr.wkbPoint25D, "Polygon Z": ogr.wkbPolygon25D}
 #: Rows inserted between two looks at the cancel button.
 CHUNK = 50_000
 
 
-def add_layers(path, layers, wkt: str | None, feedback) -> None:
+def add_layers(path: Path, layers: Iterable[Layer], wkt: str | None, feedback: QgsFeedback) -> None:
     """Add layers and their styles to a GeoPackage that is there already.
 
     Parameters
@@ -32,7 +43,7 @@ def add_layers(path, layers, wkt: str | None, feedback) -> None:
     layers : iterable of wavelet_gis.products.layers.Layer
     wkt : str or None
         CRS of all of them.
-    feedback : QgsProcessingFeedback
+    feedback : QgsFeedback
 
     Raises
     ------
@@ -52,7 +63,7 @@ def add_layers(path, layers, wkt: str | None, feedback) -> None:
     write_styles(path, styles)
 
 
-def _create(path, layer, wkt) -> None:
+def _create(path: Path, layer: Layer, wkt: str | None) -> None:
     refusal = partial(_failure, path, layer)
     with (
         without_exceptions(gdal, refusal),
@@ -81,7 +92,7 @@ def _create(path, layer, wkt) -> None:
         table = dataset = None  # closes the file
 
 
-def _insert(path, layer, feedback) -> None:
+def _insert(path: Path, layer: Layer, feedback: QgsFeedback) -> None:
     from wavelet_gis.io.geopackage import open_for_writing
 
     names = ", ".join(_quoted(name) for name in ("geom", *layer.fields))
@@ -115,7 +126,7 @@ def _quoted(name: str) -> str:
     return '"' + name.replace('"', '""') + '"'
 
 
-def _index(path, layer) -> None:
+def _index(path: Path, layer: Layer) -> None:
     refusal = partial(_failure, path, layer)
     with without_exceptions(gdal, refusal), without_exceptions(ogr, refusal):
         dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)
@@ -125,7 +136,7 @@ def _index(path, layer) -> None:
         dataset = None  # closes the file
 
 
-def _bounds(layer):
+def _bounds(layer: Layer) -> tuple[float, float, float, float]:
     """Return the smallest and largest x and y in the geometries, read out of their bytes."""
     joined = np.frombuffer(b"".join(layer.geometry.tolist()), np.uint8).reshape(
         len(layer.geometry), -1
@@ -136,13 +147,13 @@ def _bounds(layer):
     return float(x_min), float(y_min), float(x_max), float(y_max)
 
 
-def _field_type(column):
+def _field_type(column: NDArray[Any]) -> int:
     if column.dtype.kind == "f":
         return ogr.OFTReal
     return ogr.OFTInteger64 if column.dtype.itemsize > 4 else ogr.OFTInteger
 
 
-def _failure(path, layer, reason):
+def _failure(path: Path, layer: Layer, reason: str) -> QgsProcessingException:
     return QgsProcessingException(
         tr("{}: layer {} cannot be written ({}); check the disk and the name.").format(
             path, layer.name, reason

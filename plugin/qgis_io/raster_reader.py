@@ -8,21 +8,29 @@ providers are read block by block through QGIS.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from osgeo import gdal
-from qgis.core import (
-    Qgis,
-    QgsProcessingException,
-    QgsRasterIterator,
-    QgsRasterRange,
-)
+from qgis.core import Qgis, QgsRasterIterator, QgsRasterRange
 
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from .gdal_errors import opened, without_exceptions
+
+if TYPE_CHECKING:
+    from qgis.core import (
+        QgsCoordinateReferenceSystem,
+        QgsFeedback,
+        QgsRasterDataProvider,
+        QgsRasterLayer,
+    )
+
+    from wavelet_gis.model.dem import Dem
 
 #: Cells read or written between two looks at the cancel button.
 STRIP_CELLS = 1 << 21
@@ -81,16 +89,16 @@ class RasterInput:
 
     name: str
     band: int
-    crs: Any
+    crs: QgsCoordinateReferenceSystem
     path: str | None
-    provider: Any
+    provider: QgsRasterDataProvider
     uses_nodata: bool
-    hidden: list
+    hidden: list[tuple[float, float, bool, bool]]
 
     @classmethod
-    def from_layer(cls, layer, band: int) -> RasterInput:
+    def from_layer(cls, layer: QgsRasterLayer, band: int) -> RasterInput:
         """Return the input of a layer; call it in the thread that the layer lives in."""
-        provider = layer.dataProvider()
+        provider: Any = layer.dataProvider()  # of a valid layer, there is one
         hidden = [
             (item.min(), item.max(), *_closed_ends(item.bounds()))
             for item in provider.userNoDataValues(band)
@@ -118,7 +126,7 @@ class RasterInput:
             return known_unit(dataset.GetRasterBand(self.band).GetUnitType()) if dataset else None
 
 
-def read_dem(raster: RasterInput, feedback):
+def read_dem(raster: RasterInput, feedback: QgsFeedback) -> Dem:
     """Return the layer's band as a ``Dem``.
 
     Raises
@@ -137,17 +145,17 @@ def read_dem(raster: RasterInput, feedback):
         )
     if raster.path is not None:
         with without_exceptions(gdal, partial(_unreadable, raster)):
-            dem = _read_with_gdal(raster, feedback)
+            dem = _read_with_gdal(raster, raster.path, feedback)
     if dem is None:
         dem = _read_with_qgis(raster, feedback)
     return dem
 
 
-def _read_with_gdal(raster: RasterInput, feedback):
+def _read_with_gdal(raster: RasterInput, path: str, feedback: QgsFeedback) -> Dem | None:
     """Return the ``Dem``, or None where GDAL cannot open what its provider opened."""
     from wavelet_gis.model.dem import Dem, GridGeometry
 
-    dataset = opened(gdal, raster.path)
+    dataset = opened(gdal, path)
     if dataset is None or dataset.RasterCount < raster.band:
         return None
     band = dataset.GetRasterBand(raster.band)
@@ -179,7 +187,7 @@ def _read_with_gdal(raster: RasterInput, feedback):
     return _with_holes(dem, raster)
 
 
-def _read_with_qgis(raster: RasterInput, feedback):
+def _read_with_qgis(raster: RasterInput, feedback: QgsFeedback) -> Dem:
     from wavelet_core.errors import Cancelled
     from wavelet_gis.model.dem import Dem, GridGeometry
 
@@ -197,7 +205,7 @@ def _read_with_qgis(raster: RasterInput, feedback):
         if feedback.isCanceled():
             raise Cancelled("cancelled while reading the raster")
         is_part, width, height, block, left, top = iterator.readNextRasterPart(band)
-        if not is_part:
+        if not is_part or block is None:
             break
         part = np.frombuffer(block.data().data(), dtype=dtype).reshape(height, width)
         values[top : top + height, left : left + width] = part
@@ -218,7 +226,7 @@ def _read_with_qgis(raster: RasterInput, feedback):
     return _with_holes(Dem(values, valid, geometry, nodata), raster)
 
 
-def _with_holes(dem, raster: RasterInput):
+def _with_holes(dem: Dem, raster: RasterInput) -> Dem:
     """Mark what the layer's properties hide, and whatever is not finite, as holes."""
     if dem.values.dtype.kind == "f":
         dem.valid[...] &= np.isfinite(dem.values)
@@ -229,7 +237,7 @@ def _with_holes(dem, raster: RasterInput):
     return dem
 
 
-def strips(n_rows: int, n_columns: int, feedback):
+def strips(n_rows: int, n_columns: int, feedback: QgsFeedback) -> Iterator[tuple[int, int]]:
     """Yield ``(start, stop)`` rows, with a look at the cancel button before each."""
     from wavelet_core.errors import Cancelled
 
@@ -240,13 +248,13 @@ def strips(n_rows: int, n_columns: int, feedback):
         yield start, min(start + height, n_rows)
 
 
-def _array(raw, dtype, n_columns: int, raster: RasterInput):
+def _array(raw: Any, dtype: np.dtype[Any], n_columns: int, raster: RasterInput) -> NDArray[Any]:
     if raw is None:
         raise _unreadable(raster, gdal.GetLastErrorMsg())
     return np.frombuffer(raw, dtype=dtype).reshape(-1, n_columns)
 
 
-def _as_stored(nodata, dtype):
+def _as_stored(nodata: float | None, dtype: np.dtype[Any]) -> float | int | None:
     """Return the nodata value as the band's own type holds it, or None where it cannot."""
     if nodata is None:
         return None
@@ -256,10 +264,10 @@ def _as_stored(nodata, dtype):
     return float(nodata)
 
 
-def _profile(dataset, band) -> dict:
+def _profile(dataset: Any, band: Any) -> dict[str, Any]:
     """Return what the writer may take over, JSON-able, named as in ``wavelet_gis.io.raster``."""
     structure = dataset.GetMetadata("IMAGE_STRUCTURE")
-    options = {}
+    options: dict[str, Any] = {}
     compression = structure.get("COMPRESSION", "")
     if compression in _LOSSLESS:
         options["compress"] = compression.lower()
@@ -277,14 +285,14 @@ def _profile(dataset, band) -> dict:
     }
 
 
-def _closed_ends(bounds) -> tuple[bool, bool]:
+def _closed_ends(bounds: QgsRasterRange.BoundsType) -> tuple[bool, bool]:
     """Return whether the lower and the upper end belong to a range of values."""
     kinds = QgsRasterRange.BoundsType
     has_low = bounds in (kinds.IncludeMinAndMax, kinds.IncludeMin)
     return has_low, bounds in (kinds.IncludeMinAndMax, kinds.IncludeMax)
 
 
-def _unreadable(raster: RasterInput, reason: str):
+def _unreadable(raster: RasterInput, reason: str) -> QgsProcessingException:
     return QgsProcessingException(
         tr("{}: the raster cannot be read ({}); the file is damaged, get it again.").format(
             raster.name, reason
@@ -292,7 +300,7 @@ def _unreadable(raster: RasterInput, reason: str):
     )
 
 
-def _unusable_type(raster: RasterInput, type_name: str):
+def _unusable_type(raster: RasterInput, type_name: str) -> QgsProcessingException:
     return QgsProcessingException(
         tr("{}: band {} holds values of type {}; elevations must be real numbers.").format(
             raster.name, raster.band, type_name

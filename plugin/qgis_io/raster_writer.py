@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import os
 from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from osgeo import gdal
-from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingException, QgsRasterFileWriter
+from qgis.core import QgsRasterFileWriter
 
+from ..ui.enums import WKT_FOR_GDAL
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from .gdal_errors import without_exceptions
 from .raster_reader import GDAL_TYPES, strips
 
+if TYPE_CHECKING:
+    from qgis.core import QgsCoordinateReferenceSystem, QgsFeedback
 
-def write_dem(path: str, dem, crs, feedback) -> None:
+    from wavelet_gis.model.dem import Dem, GridGeometry
+    from wavelet_gis.products.vertex_raster import Bands
+
+
+def write_dem(
+    path: str, dem: Dem, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback
+) -> None:
     """Write a ``Dem`` as a raster; the suffix chooses the format.
 
     Parameters
@@ -59,7 +71,9 @@ def write_dem(path: str, dem, crs, feedback) -> None:
             raise refusal(gdal.GetLastErrorMsg())
 
 
-def write_bands(path: str, bands, crs, feedback) -> None:
+def write_bands(
+    path: str, bands: Bands, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback
+) -> None:
     """Write ``wavelet_gis.products.vertex_raster.Bands`` as a GeoTIFF, each band with its name.
 
     Raises
@@ -94,7 +108,7 @@ def write_bands(path: str, bands, crs, feedback) -> None:
             raise refusal(gdal.GetLastErrorMsg())
 
 
-def _fill(dataset, dem, crs, feedback) -> bool:
+def _fill(dataset: Any, dem: Dem, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback) -> bool:
     _georeference(dataset, dem.geometry, crs)
     for key, value in dict(dem.profile.get("tags", {})).items():
         dataset.SetMetadataItem(str(key), str(value))
@@ -111,14 +125,14 @@ def _fill(dataset, dem, crs, feedback) -> bool:
     return is_written
 
 
-def _georeference(dataset, geometry, crs) -> None:
+def _georeference(dataset: Any, geometry: GridGeometry, crs: QgsCoordinateReferenceSystem) -> None:
     a, b, c, d, e, f = geometry.transform
     dataset.SetGeoTransform((c, a, b, f, d, e))
     if crs.isValid():
-        dataset.SetProjection(crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL))
+        dataset.SetProjection(crs.toWkt(WKT_FOR_GDAL))
 
 
-def _write_strips(band, values, feedback) -> bool:
+def _write_strips(band: Any, values: NDArray[Any], feedback: QgsFeedback) -> bool:
     n_rows, n_columns = values.shape
     for start, stop in strips(n_rows, n_columns, feedback):
         strip = np.ascontiguousarray(values[start:stop])
@@ -127,7 +141,7 @@ def _write_strips(band, values, feedback) -> bool:
     return True
 
 
-def _unwritten(path: str, reason: str):
+def _unwritten(path: str, reason: str) -> QgsProcessingException:
     return QgsProcessingException(
         tr("{}: GDAL could not write this raster ({}); check the disk and the name.").format(
             path, reason
@@ -135,7 +149,7 @@ def _unwritten(path: str, reason: str):
     )
 
 
-def _creation_options(dem) -> list[str]:
+def _creation_options(dem: Dem) -> list[str]:
     options = dict(dem.profile.get("options", {}))
     # Lossless, and a third of the size: what a new raster gets.
     options.setdefault("compress", "deflate")

@@ -2,17 +2,38 @@
 
 from __future__ import annotations
 
-import numpy as np
-from qgis.core import QgsGeometry, QgsPoint, QgsProcessingException
+from typing import TYPE_CHECKING
 
+import numpy as np
+from numpy.typing import NDArray
+from qgis.core import QgsGeometry
+
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
+from .geometry import inside
 from .vectors import features_in
+
+if TYPE_CHECKING:
+    from qgis.core import (
+        QgsCoordinateReferenceSystem,
+        QgsCoordinateTransformContext,
+        QgsFeature,
+        QgsProcessingFeatureSource,
+        QgsProcessingFeedback,
+    )
 
 #: Label of vertices outside all areas.
 NOT_KNOWN = -1
 
 
-def labels_inside(source, field, positions, crs, transform_context, feedback) -> np.ndarray:
+def labels_inside(
+    source: QgsProcessingFeatureSource,
+    field: str,
+    positions: NDArray[np.float64],
+    crs: QgsCoordinateReferenceSystem,
+    transform_context: QgsCoordinateTransformContext,
+    feedback: QgsProcessingFeedback,
+) -> NDArray[np.int64]:
     """Return the class of the first polygon that each position is inside, or -1.
 
     Parameters
@@ -41,15 +62,12 @@ def labels_inside(source, field, positions, crs, transform_context, feedback) ->
         box = geometry.boundingBox()
         is_near = (x >= box.xMinimum()) & (x <= box.xMaximum())
         is_near &= (y >= box.yMinimum()) & (y <= box.yMaximum()) & (labels == NOT_KNOWN)
-        engine = QgsGeometry.createGeometryEngine(geometry.constGet())
-        engine.prepareGeometry()
-        for k in np.flatnonzero(is_near).tolist():
-            if engine.contains(QgsPoint(x[k], y[k])):
-                labels[k] = label
+        rows = np.flatnonzero(is_near)
+        labels[rows[inside(geometry, positions[rows, :2])]] = label
     return labels
 
 
-def _label(feature, index, field) -> int:
+def _label(feature: QgsFeature, index: int, field: str) -> int:
     value = feature.attributes()[index]
     try:
         label = int(value)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from qgis.core import (
     QgsFeature,
     QgsFeatureRequest,
@@ -12,13 +14,24 @@ from qgis.core import (
     QgsField,
     QgsFields,
     QgsGeometry,
-    QgsProcessingException,
     QgsWkbTypes,
 )
 
+from ..ui.enums import DOUBLE, INTEGER, POINT_Z, POLYGON_Z
+from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from .crs_and_progress import require_running
-from .field_types import DOUBLE, INTEGER
+
+if TYPE_CHECKING:
+    from qgis.core import (
+        QgsCoordinateReferenceSystem,
+        QgsCoordinateTransformContext,
+        QgsFeedback,
+        QgsProcessingFeatureSource,
+        QgsProcessingFeedback,
+    )
+
+    from wavelet_gis.products.layers import Layer
 
 #: Features read or written between two looks at the cancel button.
 CHUNK = 5_000
@@ -27,12 +40,18 @@ CHUNK = 5_000
 class Points(NamedTuple):
     """Points of a layer: xyz (n, 3), attributes (n, k), is_marked (n,) bool."""
 
-    xyz: np.ndarray
-    attributes: np.ndarray
-    is_marked: np.ndarray
+    xyz: NDArray[np.float64]
+    attributes: NDArray[np.float64]
+    is_marked: NDArray[np.bool_]
 
 
-def read_points(source, z_field, attribute_fields, mark_field, feedback) -> Points:
+def read_points(
+    source: QgsProcessingFeatureSource,
+    z_field: str | None,
+    attribute_fields: Sequence[str],
+    mark_field: str | None,
+    feedback: QgsFeedback,
+) -> Points:
     """Return the points of a source.
 
     Parameters
@@ -61,7 +80,9 @@ def read_points(source, z_field, attribute_fields, mark_field, feedback) -> Poin
                 source.sourceName()
             )
         )
-    xyz, attributes, marks = [], [], []
+    xyz: list[tuple[float, float, float]] = []
+    attributes: list[list[float]] = []
+    marks: list[bool] = []
     for feature in _features(source, feedback):
         geometry = feature.geometry()
         values = feature.attributes()
@@ -80,7 +101,9 @@ def read_points(source, z_field, attribute_fields, mark_field, feedback) -> Poin
     )
 
 
-def read_triangles(source, feedback) -> np.ndarray:
+def read_triangles(
+    source: QgsProcessingFeatureSource, feedback: QgsFeedback
+) -> NDArray[np.float64]:
     """Return the corners of a layer of triangles, ``(n_faces, 3, 3)``: face, corner, x y z.
 
     Raises
@@ -95,6 +118,7 @@ def read_triangles(source, feedback) -> np.ndarray:
             )
         )
     corners = []
+    part: Any  # of a polygon layer, a polygon
     for feature in _features(source, feedback):
         for part in feature.geometry().constParts():
             ring = part.exteriorRing()
@@ -109,7 +133,12 @@ def read_triangles(source, feedback) -> np.ndarray:
     return np.array(corners, dtype=np.float64).reshape(len(corners), 3, 3)
 
 
-def features_in(source, crs, transform_context, feedback):
+def features_in(
+    source: QgsProcessingFeatureSource,
+    crs: QgsCoordinateReferenceSystem,
+    transform_context: QgsCoordinateTransformContext,
+    feedback: QgsProcessingFeedback,
+) -> Iterator[QgsFeature]:
     """Yield the features of a source that have a geometry, in a CRS.
 
     Parameters
@@ -121,7 +150,7 @@ def features_in(source, crs, transform_context, feedback):
     transform_context : QgsCoordinateTransformContext
     feedback : QgsProcessingFeedback
     """
-    own, failed = source.sourceCrs(), []
+    own, failed = source.sourceCrs(), list[int]()
     request = QgsFeatureRequest()
     if own.isValid() != crs.isValid():
         feedback.pushWarning(
@@ -150,7 +179,7 @@ def features_in(source, crs, transform_context, feedback):
         )
 
 
-def fields_of(layer) -> QgsFields:
+def fields_of(layer: Layer) -> QgsFields:
     """Return the fields of a ``wavelet_gis.products.layers.Layer``."""
     fields = QgsFields()
     for name, column in layer.fields.items():
@@ -158,13 +187,17 @@ def fields_of(layer) -> QgsFields:
     return fields
 
 
-def wkb_type_of(layer):
+def wkb_type_of(layer: Layer) -> Any:
     """Return the geometry type of a ``wavelet_gis.products.layers.Layer``."""
-    types = QgsWkbTypes.Type
-    return {"Point Z": types.PointZ, "Polygon Z": types.PolygonZ}[layer.geometry_type]
+    return {"Point Z": POINT_Z, "Polygon Z": POLYGON_Z}[layer.geometry_type]
 
 
-def add_layer(sink, layer, feedback, rows=None) -> int:
+def add_layer(
+    sink: QgsFeatureSink,
+    layer: Layer,
+    feedback: QgsFeedback,
+    rows: NDArray[np.intp] | None = None,
+) -> int:
     """Add the features of a ``wavelet_gis.products.layers.Layer`` to a sink made with its fields.
 
     Parameters
@@ -181,7 +214,7 @@ def add_layer(sink, layer, feedback, rows=None) -> int:
         Number of features added.
     """
     fields = fields_of(layer)
-    selected = slice(None) if rows is None else rows
+    selected: Any = slice(None) if rows is None else rows
     geometries = layer.geometry[selected]
     columns = [column[selected].tolist() for column in layer.fields.values()]
     for start in range(0, len(geometries), CHUNK):
@@ -203,7 +236,8 @@ def add_layer(sink, layer, feedback, rows=None) -> int:
     return len(geometries)
 
 
-def _features(source, feedback):
+def _features(source: QgsProcessingFeatureSource, feedback: QgsFeedback) -> Iterator[QgsFeature]:
+    feature: QgsFeature
     for count, feature in enumerate(source.getFeatures()):
         if count % CHUNK == 0:
             require_running(feedback)
@@ -211,7 +245,7 @@ def _features(source, feedback):
             yield feature
 
 
-def _number(feature, value, name) -> float:
+def _number(feature: QgsFeature, value: Any, name: str) -> float:
     try:
         return float(value)
     except (TypeError, ValueError) as error:
@@ -222,9 +256,9 @@ def _number(feature, value, name) -> float:
         ) from error
 
 
-def _is_null(value) -> bool:
+def _is_null(value: Any) -> bool:
     return value is None or (hasattr(value, "isNull") and value.isNull())
 
 
-def _is_true(value) -> bool:
+def _is_true(value: Any) -> bool:
     return not _is_null(value) and bool(value) and str(value).strip().lower() not in ("0", "false")

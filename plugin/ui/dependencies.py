@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import importlib.util
+import shlex
 import sys
+import sysconfig
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,7 +18,17 @@ MINIMUM_PYTHON = (3, 11)
 
 @dataclass(frozen=True)
 class Package:
-    """A package by its import name, its name for pip, and its Debian package where there is one."""
+    """A Python package.
+
+    Attributes
+    ----------
+    module : str
+        By which it is imported.
+    pip : str
+        By which pip knows it.
+    debian : str or None
+        Its Debian package, where there is one.
+    """
 
     module: str
     pip: str
@@ -37,19 +50,24 @@ EZDXF = Package("ezdxf", "ezdxf")
 ALWAYS = (NUMPY, SCIPY)
 
 
+def named(pip: str) -> Package:
+    """Return the package that pip knows by a name."""
+    return next((p for p in (TRIMESH, EZDXF) if p.pip == pip), Package(pip, pip))
+
+
 def for_las(path: str) -> tuple[Package, ...]:
     """Return what a LAS file needs, and a compressed one more."""
     return (LASPY, LAZRS, PYPROJ) if path.lower().endswith(".laz") else (LASPY, PYPROJ)
 
 
-def missing(packages) -> list[Package]:
+def missing(packages: Iterable[Package]) -> list[Package]:
     """Return those of ``packages`` that cannot be found, without importing them."""
     return [package for package in packages if importlib.util.find_spec(package.module) is None]
 
 
-def remedy(packages) -> str:
+def remedy(packages: Sequence[Package]) -> str:
     """Return the exact command that installs ``packages`` for the Python that QGIS runs here."""
-    names = " ".join(package.pip for package in packages)
+    names = _quoted(package.pip for package in packages)
     if Path("/.flatpak-info").exists():
         return tr("in a terminal: {}").format(
             f"flatpak run --command=pip3 org.qgis.qgis install --user {names}"
@@ -64,25 +82,32 @@ def remedy(packages) -> str:
     return tr("in a terminal: {}").format(_linux_command(packages))
 
 
-def _linux_command(packages) -> str:
+def _linux_command(packages: Sequence[Package]) -> str:
     commands = []
     from_debian = [p.debian for p in packages if p.debian] if _is_debian() else []
     from_pip = [p.pip for p in packages if not (p.debian and from_debian)]
     if from_debian:
-        commands.append("sudo apt install " + " ".join(from_debian))
+        commands.append(f"sudo apt install {' '.join(from_debian)}")
     if from_pip:
         # Debian 12 and later, Fedora and others refuse pip into the system's Python without this.
-        marker = Path(importlib.util.__file__).parent.parent / "EXTERNALLY-MANAGED"
+        marker = Path(sysconfig.get_path("stdlib")) / "EXTERNALLY-MANAGED"
         allow = "--break-system-packages " if marker.exists() else ""
-        commands.append(f"/usr/bin/python3 -m pip install --user {allow}" + " ".join(from_pip))
+        commands.append(f"/usr/bin/python3 -m pip install --user {allow}{_quoted(from_pip)}")
     return " && ".join(commands)
+
+
+def _quoted(names: Iterable[str]) -> str:
+    """Return names as a shell takes them: zsh would look for files called ``laspy[lazrs]``."""
+    if sys.platform == "win32":  # cmd knows double quotes only
+        return " ".join(f'"{name}"' if "[" in name else name for name in names)
+    return " ".join(map(shlex.quote, names))
 
 
 def _is_debian() -> bool:
     return Path("/etc/debian_version").exists()
 
 
-def refusal(packages=()) -> str | None:
+def refusal(packages: Sequence[Package] = ()) -> str | None:
     """Return why nothing can run here, with the remedy, or None when all is there.
 
     Parameters
@@ -114,5 +139,5 @@ def slow_without_numba() -> str | None:
     ).format(remedy([NUMBA]))
 
 
-def _dotted(version) -> str:
+def _dotted(version: Iterable[int]) -> str:
     return ".".join(str(part) for part in version)

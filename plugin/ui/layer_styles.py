@@ -4,44 +4,72 @@ from __future__ import annotations
 
 import os
 from collections import deque
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
 from qgis.core import (
     Qgis,
     QgsCategorizedSymbolRenderer,
+    QgsColorRampShader,
     QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
     QgsPalettedRasterRenderer,
     QgsProcessingLayerPostProcessorInterface,
-    QgsRandomColorRamp,
+    QgsRasterShader,
     QgsRendererCategory,
+    QgsSingleBandPseudoColorRenderer,
     QgsVectorLayerUtils,
 )
+from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument
 
+from .enums import INTERPOLATED
 from .translation import tr
+
+if TYPE_CHECKING:
+    from qgis.core import QgsMapLayer, QgsProcessingContext, QgsProcessingFeedback
+
+Colour = tuple[int, int, int]
+
+#: From what was taken away through nothing to what was added: ColorBrewer's RdBu.
+_DIVERGING = ((33, 102, 172), (146, 197, 222), (247, 247, 247), (244, 165, 130), (178, 24, 43))
+#: From nothing to much: matplotlib's magma, the dark end first.
+_SEQUENTIAL = ((0, 0, 4), (81, 18, 124), (183, 55, 121), (252, 137, 97), (252, 253, 191))
+#: Share of the cells, at either end, that a ramp leaves beyond its last colours.
+_TAIL = 0.02
+#: Cells of a raster that are looked at to choose the ramp.
+_SAMPLE_SIZE = 250_000
+#: Metres of a degree of latitude, to shade elevations in metres over degrees.
+_METRES_A_DEGREE = 111_320.0
 
 
 class _Style(QgsProcessingLayerPostProcessorInterface):
     """Gives a loaded layer its style, in the main thread, after the algorithm is done."""
 
-    def __init__(self, function):
+    def __init__(self, function: Callable[[Any], None]) -> None:
         super().__init__()
         self.function = function
 
-    def postProcessLayer(self, layer, context, feedback):
+    def postProcessLayer(
+        self,
+        layer: QgsMapLayer | None,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback | None,
+    ) -> None:
         """Style the layer."""
-        self.function(layer)
-        layer.triggerRepaint()
+        if layer is not None:
+            self.function(layer)
+            layer.triggerRepaint()
 
 
-def apply_qml(layer, qml: str) -> None:
+def apply_qml(layer: Any, qml: str) -> None:
     """Give a layer the style in a QML text."""
     document = QDomDocument()
     document.setContent(qml)
     layer.importNamedStyle(document)
 
 
-def style_details(layer) -> None:
+def style_details(layer: Any) -> None:
     """Colour the points by level and size them by magnitude (the paper's Fig. 10b).
 
     Each level looks as its own layer does in a pyramid file.
@@ -63,13 +91,13 @@ def style_details(layer) -> None:
         layer.setRenderer(QgsCategorizedSymbolRenderer("level", categories))
 
 
-def style_hillshade(layer) -> None:
+def style_hillshade(layer: Any) -> None:
     """Show a DEM as its hillshade, lit from several sides."""
     provider = layer.dataProvider()
     renderer = QgsHillshadeRenderer(provider, 1, 315.0, 45.0)
     renderer.setMultiDirectional(True)
     if layer.crs().isGeographic():
-        renderer.setZFactor(1.0 / 111_320.0)
+        renderer.setZFactor(1.0 / _METRES_A_DEGREE)
     layer.setRenderer(renderer)
     # Elevations are resampled before they are shaded: steps of nearest cells would show as stripes.
     methods = provider.ResamplingMethod
@@ -79,7 +107,44 @@ def style_hillshade(layer) -> None:
     layer.setResamplingStage(Qgis.RasterResamplingStage.Provider)
 
 
-def set_mesh_crs(layer) -> None:
+def style_difference(layer: Any) -> None:
+    """Show what was added in red, what was taken away in blue, and what stayed in white."""
+    low, high = _range(layer, 1)
+    largest = max(abs(low), abs(high)) or 1.0
+    _show_band(layer, 1, -largest, largest, _DIVERGING)
+
+
+def style_energy(layer: Any) -> None:
+    """Show one band of a raster of energies, that of the roughest level; the others are there."""
+    ranges = [_range(layer, band) for band in range(1, layer.bandCount() + 1)]
+    largest = [high for _, high in ranges]
+    band = 1 + largest.index(max(largest))
+    _show_band(layer, band, 0.0, largest[band - 1] or 1.0, _SEQUENTIAL)
+
+
+def style_labels(layer: Any, name: str) -> None:
+    """Give each label of a raster the colour that the vertices with this label have.
+
+    Parameters
+    ----------
+    layer : QgsRasterLayer
+        Of labels.
+    name : {"cluster", "class"}
+        What a label is.
+    """
+    from wavelet_gis.products.label_layer import label_colour
+
+    word = tr("class") if name == "class" else tr("cluster")
+    provider = layer.dataProvider()
+    classes = QgsPalettedRasterRenderer.classDataFromRaster(provider, 1)
+    for entry in classes:
+        label = int(entry.value)
+        entry.color = QColor(*label_colour(label, name))
+        entry.label = f"{word} {label}"
+    layer.setRenderer(QgsPalettedRasterRenderer(provider, 1, classes))
+
+
+def set_mesh_crs(layer: Any) -> None:
     """Give a mesh the CRS that its file cannot hold, from the .prj written beside it."""
     path = os.path.splitext(layer.source())[0] + ".prj"
     if not layer.crs().isValid() and os.path.isfile(path):
@@ -87,25 +152,20 @@ def set_mesh_crs(layer) -> None:
             layer.setCrs(QgsCoordinateReferenceSystem.fromWkt(file.read()))
 
 
-def style_labels(layer) -> None:
-    """Give each label of a raster a colour of its own."""
-    provider = layer.dataProvider()
-    ramp = QgsRandomColorRamp()
-    classes = QgsPalettedRasterRenderer.classDataFromRaster(provider, 1, ramp)
-    layer.setRenderer(QgsPalettedRasterRenderer(provider, 1, classes))
-
-
 #: Post-processors that were handed out. Some versions of QGIS take them over, others do not, so
 #: these references keep them alive until they have surely been used.
-_handed_out = deque(maxlen=1000)
+_handed_out: deque[_Style] = deque(maxlen=1000)
 
 
-def style_output(context, destination, style) -> None:
+def style_output(
+    context: QgsProcessingContext, destination: str, style: Callable[[Any], None]
+) -> None:
     """Let ``destination`` open with a style, if it opens at all.
 
     Parameters
     ----------
     context : QgsProcessingContext
+        Knows what is opened.
     destination : str
         As ``parameterAsSink`` or the output map names it.
     style : callable
@@ -115,3 +175,30 @@ def style_output(context, destination, style) -> None:
         processor = _Style(style)
         _handed_out.append(processor)
         context.layerToLoadOnCompletionDetails(destination).setPostProcessor(processor)
+
+
+def _range(layer: Any, band: int) -> tuple[float, float]:
+    """Return the values of a band between which nearly all of its cells are."""
+    provider = layer.dataProvider()
+    low, high = provider.cumulativeCut(band, _TAIL, 1 - _TAIL, layer.extent(), _SAMPLE_SIZE)
+    return float(low), float(high)
+
+
+def _show_band(layer: Any, band: int, low: float, high: float, ramp: Sequence[Colour]) -> None:
+    """Show one band in colours that run from ``low`` to ``high``."""
+    step = (high - low) / (len(ramp) - 1)
+    function = QgsColorRampShader(low, high, None, INTERPOLATED)
+    function.setColorRampItemList(
+        [
+            QgsColorRampShader.ColorRampItem(
+                low + k * step, QColor(*colour), f"{low + k * step:.3g}"
+            )
+            for k, colour in enumerate(ramp)
+        ]
+    )
+    shader = QgsRasterShader()
+    shader.setRasterShaderFunction(function)
+    renderer = QgsSingleBandPseudoColorRenderer(layer.dataProvider(), band, shader)
+    renderer.setClassificationMin(low)
+    renderer.setClassificationMax(high)
+    layer.setRenderer(renderer)

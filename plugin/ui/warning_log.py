@@ -4,21 +4,31 @@ from __future__ import annotations
 
 import threading
 import warnings
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from qgis.core import QgsProcessingFeedback
 
 _feedbacks = threading.local()
-_show_before = None
+_show_before: Callable[..., None] | None = None
 
 
 @contextmanager
-def shown_in(feedback, wording):
-    """Show the warnings of ``wavelet_gis`` that this thread raises inside the block in its log.
-
-    ``wording`` takes a warning and returns what to show.
+def shown_in(feedback: QgsProcessingFeedback, wording: Callable[[Any], str]) -> Iterator[None]:
+    """Show our warnings that this thread raises inside the block in its log.
 
     QGIS runs algorithms in several threads, so Python's own ``catch_warnings``, which swaps the
     handler of the whole process, will not do: one handler is installed, once, and looks up the
     feedback of the thread it is called in. All other warnings go where they went before.
+
+    Parameters
+    ----------
+    feedback : QgsProcessingFeedback
+        The log.
+    wording : callable
+        Takes a warning and returns what to show.
     """
     _install()
     outer = getattr(_feedbacks, "current", None)
@@ -31,10 +41,12 @@ def shown_in(feedback, wording):
 
 def _install() -> None:
     global _show_before
+    from wavelet_core.errors import WaveletWarning
     from wavelet_gis.errors import TerrainWarning
 
     # Also when the same text comes from the same line again: each run has a log of its own.
     warnings.simplefilter("always", TerrainWarning)
+    warnings.simplefilter("always", WaveletWarning)
     if warnings.showwarning is not _show:
         _show_before = warnings.showwarning
         warnings.showwarning = _show
@@ -43,19 +55,27 @@ def _install() -> None:
 def uninstall() -> None:
     """Put the handler back that was there before."""
     global _show_before
-    if warnings.showwarning is _show:
+    if warnings.showwarning is _show and _show_before is not None:
         warnings.showwarning = _show_before
     _show_before = None
 
 
-def _show(message, category, filename, lineno, file=None, line=None):
-    from wavelet_core.errors import SlowFallbackWarning
+def _show(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    from wavelet_core.errors import SlowFallbackWarning, WaveletWarning
     from wavelet_gis.errors import TerrainWarning
 
-    feedback, wording = getattr(_feedbacks, "current", None) or (None, None)
-    if feedback is not None and issubclass(category, SlowFallbackWarning):
+    current = getattr(_feedbacks, "current", None)
+    if current is not None and issubclass(category, SlowFallbackWarning):
         return  # told already, with the remedy for this platform
-    if feedback is not None and issubclass(category, TerrainWarning):
+    if current is not None and issubclass(category, TerrainWarning | WaveletWarning):
+        feedback, wording = current
         feedback.pushWarning(wording(message))
     elif _show_before is not None:
         _show_before(message, category, filename, lineno, file, line)

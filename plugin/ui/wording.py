@@ -1,37 +1,81 @@
-"""Messages of the shared layers, which speak of the command line, in the words of a dialog."""
+"""Messages of the shared layers in the words of a dialog.
+
+The messages name the parameters of Python functions, and the errors, warnings and notes that carry
+them tell these names apart (``in_words``); here each becomes the label that the dialog shows.
+"""
 
 from __future__ import annotations
 
-import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Protocol
 
 from .translation import tr
 
-_OPTION = re.compile(r"--([a-z]+(?:-[a-z]+)*)")
+if TYPE_CHECKING:
+    from qgis.core import QgsProcessingAlgorithm
+
+#: Parameters of Python functions that dialogs know by another id than the same in capitals, the
+#: first that a dialog has.
+IDS = {
+    "target_vertices": ("TARGET_VERTICES", "VERTICES"),
+    "vertices": ("VERTICES", "TARGET_VERTICES"),
+    "max_rms": ("MAX_RMS", "RMSE"),
+    "sigma": ("SIGMA_OF_NOISE",),
+    "n_pyramids": ("PYRAMIDS",),
+    "levels": ("LEVELS", "FIRST_LEVEL"),
+    "metres": ("SMALLEST_SIZE",),
+    "level": ("LEVEL", "FIRST_LEVEL"),
+    "learn": ("LEARN_FROM",),
+    "labels": ("TRAINING",),
+    "what": ("ENERGY",),
+}
 
 
-def for_dialog(message: str, has_crs: bool = False) -> str:
-    """Return a message with the names of parameters where it has options of the command line.
+class Message(Protocol):
+    """An error, a warning or a note that tells its parameters apart."""
 
-    ``leave hag out of --attributes`` becomes ``leave hag out of 'attributes'``. The CRS is a
-    property of the layer in QGIS and no parameter for most inputs, so it is told apart.
+    def in_words(self, name_of: Callable[[str], str]) -> str:
+        """Return the text with the parameters named as the reader knows them."""
+
+
+def labels_of(algorithm: QgsProcessingAlgorithm) -> Callable[[str], str]:
+    """Return the function from a parameter's name in Python to its label in the dialog.
 
     Parameters
     ----------
-    message : str
-        Or an exception or a warning that says it.
-    has_crs : bool
-        Whether the dialog has a parameter for the CRS.
+    algorithm : QgsProcessingAlgorithm
+        Whose dialog.
+
+    Returns
+    -------
+    callable
+        A parameter that the dialog does not have keeps its name. The CRS is a property of the
+        layer for most inputs.
     """
-    text = str(message).replace("'terrain-wavelets analyse'", tr("one of the analyses"))
-    if not has_crs:
-        text = re.sub(r"give (one|another|the right (?:one|CRS)) with --crs", _give_crs, text)
-    text = _OPTION.sub(lambda option: "'" + option.group(1).replace("-", " ") + "'", text)
+
+    def label_of(parameter: str) -> str:
+        for identifier in IDS.get(parameter, (parameter.upper(),)):
+            definition = algorithm.parameterDefinition(identifier)
+            if definition is not None:
+                return f"'{definition.description()}'"
+        if parameter == "crs":
+            return tr("the layer's properties")
+        return parameter.replace("_", " ")
+
+    return label_of
+
+
+def in_words(message: Message | Warning, name_of: Callable[[str], str]) -> str:
+    """Return the text of a message as a sentence.
+
+    Parameters
+    ----------
+    message : WaveletError, Warning or Note
+        What is to be told; a warning of the mathematics is about no parameter.
+    name_of : callable
+        From `labels_of`.
+    """
+    tell = getattr(message, "in_words", None)
+    text: str = str(message) if tell is None else tell(name_of)
     # What starts with the name of a layer or a file keeps it as it is.
     return text if ": " in text.split(";")[0] else text[:1].upper() + text[1:]
-
-
-def _give_crs(match) -> str:
-    word = match.group(1)
-    return tr("assign {} in the layer's properties").format(
-        {"one": tr("one"), "another": tr("another")}.get(word, tr("the right one"))
-    )

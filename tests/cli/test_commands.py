@@ -129,7 +129,7 @@ def test_extract_a_raster_of_another_cell_size_and_of_points(
         assert 5 < heights.max() < 30
     said = done("extract", cloud_pyramid, tmp_path / "c.tif", "--json")
     n_cells = said.figures["n_rows"] * said.figures["n_columns"]
-    assert 0.7 < n_cells / said.figures["n_vertices"] < 1.4
+    assert 0.7 < n_cells / 380 < 1.4  # the points, whatever the level
 
 
 def test_classes_crs_and_band(done, las, tmp_path):
@@ -163,7 +163,8 @@ def test_a_geographic_dem_says_how_it_is_worked_on(done, tmp_path):
 def test_warnings_are_one_line_each(done, tmp_path):
     source = write_las(tmp_path / "a.las", crs=None)
     said = done("analyse", source, tmp_path / "a.gpkg", "--levels", 1)
-    assert said.err.count("\n") == 1
+    assert said.err.count("\n") == 2
+    assert "share x and y with others" in said.err
     assert said.err.startswith("terrain-wavelets: warning: ")
     assert "--crs" in said.err
     said = done("analyse", source, tmp_path / "b.gpkg", "--levels", 1, "--quiet")
@@ -194,3 +195,40 @@ def test_a_path_without_a_folder(done, tif, tmp_path, monkeypatch):
     done("analyse", tif, "a.gpkg", "--levels", 1)
     done("extract", "a.gpkg", "a.ply")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.gpkg", "a.ply"]
+
+
+def test_notes_are_the_same_in_text_json_info_and_report(done, tmp_path):
+    source = write_tif(tmp_path / "a.tif", hills().astype("f4"), crs=None)
+    said = done("analyse", source, tmp_path / "a.gpkg", "--target-vertices", 4, "--levels", 2)
+    assert "there is no CRS" in said.err
+    assert "--crs" in said.err
+    assert "4 were asked for" in said.out
+    codes = ["crs_missing", "size_not_reached"]
+    file = tmp_path / "b.gpkg"
+    said = done("analyse", source, file, "--target-vertices", 4, "--levels", 2, "--json")
+    assert [note["code"] for note in said.figures["notes"]] == codes
+    assert "--crs" in said.figures["notes"][0]["text"]
+    told = done("info", file, "--json").figures["notes"]
+    assert [note["code"] for note in told] == codes
+    assert "4 were asked for" in done("info", file).out
+    page = tmp_path / "a.html"
+    assert [n["code"] for n in done("report", file, page, "--json").figures["notes"]] == codes
+    assert "4 were asked for" in page.read_text("utf-8")
+
+
+def test_points_and_triangles_are_analysed(done, refused, pyramid, tmp_path):
+    done("extract", pyramid, tmp_path / "tin.gpkg", "--level", 2)
+    n_vertices = read_pyramid(pyramid).pyramid.n_vertices(2)
+    for layer in ("level_02_tin", "level_02_vertices"):
+        options = ["--layer", layer, "--levels", 1, "--json"]
+        said = done("analyse", tmp_path / "tin.gpkg", tmp_path / f"{layer}.gpkg", *options)
+        assert said.figures["n_vertices"] == n_vertices
+        done("reconstruct", tmp_path / f"{layer}.gpkg", tmp_path / f"{layer}.ply")
+    assert "--layer" in refused("analyse", tmp_path / "tin.gpkg", tmp_path / "a.gpkg")
+    assert "a pyramid already" in refused("analyse", pyramid, tmp_path / "a.gpkg")
+    table = tmp_path / "points.csv"
+    table.write_text("x,y,z\n0,0,1\n1,0,2\n0,1,3\n1,1,4\n0.5,0.4,9\n")
+    options = ["--crs", "EPSG:2154", "--levels", 1, "--json"]
+    said = done("analyse", table, tmp_path / "points.gpkg", *options)
+    assert said.figures["n_vertices"] == 5
+    assert "made from a TIN" in refused("reconstruct", tmp_path / "points.gpkg", tmp_path / "a.tif")

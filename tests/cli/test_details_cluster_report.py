@@ -170,7 +170,7 @@ def test_what_does_not_go_together_is_refused(run, folder):
     assert "not made from a point cloud" in run("cluster", "d.gpkg", "a.tif", "--learn", "las")[2]
     assert "--level is for --what shape" in run("details", "d.gpkg", "a.tif", "--level", "2")[2]
     assert "must end in" in run("details", "d.gpkg", "a.csv")[2]
-    assert "no channel 'hag'" in run("details", "d.gpkg", "a.tif", "--channel", "hag")[2]
+    assert "no --channel 'hag'" in run("details", "d.gpkg", "a.tif", "--channel", "hag")[2]
     assert "there is no level 9" in run("report", "d.gpkg", "a.html", "--level", "9")[2]
     assert "must end in .html" in run("report", "d.gpkg", "a.pdf")[2]
 

@@ -53,7 +53,7 @@ def test_a_pyramid_can_be_filtered_again_and_tells_its_history(done, pyramid, tm
     for a, b in zip(ours.pyramid.steps, theirs.pyramid.steps, strict=True):
         np.testing.assert_array_equal(a.details, b.details)
     assert ours.history == ("gains 3=0.5", "gains 1=2, 3=0.5")
-    assert not ours.source.is_exact
+    assert not ours.origin.is_exact
 
 
 def test_a_band_by_level_and_by_size_on_the_ground(done, tif, tmp_path):
@@ -121,7 +121,7 @@ def test_a_cloud_comes_back_as_a_cloud(done, cloud_pyramid, las, tmp_path):
         ([], "nothing to change"),
         (["--gain", "9=0"], "no details at level 9"),
         (["--band", "2:1"], "smaller bound first"),
-        (["--denoise", "-1"], "sigma is -1"),
+        (["--denoise", "-1"], "--denoise is -1"),
         (["--denoise", "1", "--channel", "w"], "no channel 'w'"),
     ],
 )

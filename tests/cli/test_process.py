@@ -79,13 +79,30 @@ def test_a_progress_bar_on_a_terminal(tif, tmp_path, quiet):
     assert (b"%|" in shown) != quiet
 
 
+def heed_interrupts():
+    """Undo in the child what a shell does to its background jobs, such as a run of these tests."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def ignore_interrupts():
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def start(*arguments, in_child=heed_interrupts):
+    return subprocess.Popen(
+        [*START, *map(str, arguments)],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=in_child,
+    )
+
+
 def start_long_work(tmp_path):
     """Start an analysis that takes long enough to be stopped, and wait until it is at it."""
     source = write_tif(tmp_path / "large.tif", hills(700, 700).astype("f4"))
     output = tmp_path / "a.gpkg"
-    command = [*START, "analyse", str(source), str(output), "--design", "NNLSMN"]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    return process, output
+    return start("analyse", source, output, "--design", "NNLSMN"), output
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
@@ -104,6 +121,81 @@ def test_a_signal_stops_it_and_leaves_nothing(tmp_path, number, code, what):
     assert err.count("\n") == 1
     assert not output.exists()
     assert [path.name for path in tmp_path.iterdir()] == ["large.tif"]
+
+
+#: The program, which tells when it has come to its first line: how long Python takes to get there
+#: is not ours.
+TOLD_START = """
+import sys
+from wavelet_gis.cli import interrupts
+interrupts.quit_at_once()
+print("started", flush=True)
+from wavelet_gis.cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("after", [0.0, 0.01, 0.03, 0.06, 0.1, 0.3, 1.0])
+def test_an_interrupt_at_the_start_is_one_line(tmp_path, after):
+    source = write_tif(tmp_path / "large.tif", hills(700, 700).astype("f4"))
+    arguments = ["analyse", str(source), str(tmp_path / "a.gpkg"), "--design", "NNLSMN"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", TOLD_START, *arguments],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        preexec_fn=heed_interrupts,
+    )
+    assert process.stdout.readline() == "started\n"
+    time.sleep(after)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err == "terrain-wavelets: error: interrupted; nothing was written\n"
+    assert list(tmp_path.iterdir()) == [source]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_an_interrupt_while_modules_load_is_one_line():
+    code = (
+        "import os, signal, sys\n"
+        "from wavelet_gis.cli import interrupts\n"
+        "interrupts.quit_at_once()\n"
+        "os.kill(os.getpid(), signal.SIGINT)\n"
+        "print('still here')"
+    )
+    said = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, preexec_fn=heed_interrupts
+    )
+    assert (said.returncode, said.stdout) == (130, "")
+    assert said.stderr == "terrain-wavelets: error: interrupted; nothing was written\n"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_an_interrupt_that_the_shell_has_ignored_stays_ignored(tif, tmp_path):
+    process = start("analyse", tif, tmp_path / "a.gpkg", in_child=ignore_interrupts)
+    for _ in range(20):
+        time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (0, "")
+    assert (tmp_path / "a.gpkg").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_an_interrupt_when_the_output_is_in_place_comes_too_late(tif, tmp_path):
+    output = tmp_path / "a.gpkg"
+    process = start("analyse", tif, output, "--levels", 2)
+    while not output.exists():
+        assert process.poll() is None
+        time.sleep(0.001)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 0, err
+    assert "Traceback" not in err
+    assert err in ("", f"terrain-wavelets: interrupted after {output} was written\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.gpkg"]
 
 
 def test_a_reader_that_goes_away(pyramid):

@@ -163,14 +163,24 @@ def test_the_input_is_not_overwritten(refused, pyramid, tmp_path):
         (["a.gpkg", "--update", "dice"], "dice"),
         (["a.gpkg", "--signal", "dice"], "dice"),
         (["a.gpkg", "--levels", "-1"], "levels"),
-        (["a.gpkg", "--target-vertices", "1"], "target_vertices"),
-        (["a.gpkg", "--max-error", "nan"], "max_error"),
-        (["a.gpkg", "--attribute-weights", "1,2"], "attribute_weights"),
+        (["a.gpkg", "--target-vertices", "1"], "--target-vertices is 1"),
+        (["a.gpkg", "--max-error", "nan"], "--max-error is nan"),
+        (["a.gpkg", "--attribute-weights", "1,2"], "--attribute-weights are"),
     ],
 )
 def test_options_that_do_not_fit_a_raster(refused, tif, tmp_path, arguments, what):
     name, *options = arguments
     assert what in refused("analyse", tif, tmp_path / name, *options)
+
+
+def test_a_parameter_has_the_name_of_its_command_s_flag(refused, tif, pyramid, tmp_path):
+    assert "--vertices is 1;" in refused("simplify", tif, tmp_path / "a.ply", "--vertices", "1")
+    assert "more than --vertices 9;" in refused(
+        "extract", pyramid, tmp_path / "a.ply", "--vertices", "9"
+    )
+    assert "--target-vertices is 1;" in refused(
+        "analyse", tif, tmp_path / "a.gpkg", "--target-vertices", "1"
+    )
 
 
 def test_options_that_do_not_fit_a_cloud(refused, las, out):

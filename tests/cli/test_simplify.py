@@ -5,7 +5,7 @@ import pytest
 import rasterio
 from gis.samples import hills, write_las, write_tif
 
-from wavelet_gis.io.meshes import MESH_SUFFIXES
+from wavelet_gis.io.formats import MESH_SUFFIXES
 
 
 @pytest.fixture

@@ -21,6 +21,17 @@ Face = tuple[int, int, int]
 #: A face whose doubled-then-halved plan area is no more than this times its longest edge
 #: squared counts as flat.
 FLAT = 1e-9
+#: The filters that are worked out here once more.
+PREDICTIONS = (
+    "uniform",
+    "cotangent",
+    "geometric",
+    "nnls",
+    "least_squares",
+    "barycentric",
+    "plane",
+)
+UPDATES = ("martinez_ortega", "one_ring_mean", "minimum_norm", "none")
 
 
 # --- topology ---------------------------------------------------------------------------------
@@ -210,9 +221,8 @@ def fitted_weights(method: str, points: np.ndarray, ring: list[int], odd: int) -
     matrix = np.vstack([offsets.T, math.sqrt(damping) * np.eye(n), np.ones((1, n))])
     right = np.zeros(len(matrix))
     right[-1] = 1.0
-    if method == "nnls":
-        return nnls(matrix, right)[0]
-    return np.linalg.lstsq(matrix, right, rcond=None)[0]
+    fits = {"nnls": nnls, "least_squares": np.linalg.lstsq}
+    return fits[method](matrix, right)[0]
 
 
 def barycentric_weights(
@@ -453,8 +463,13 @@ def analyse(
     bending_weight: float = 1.0,
     attribute_weights: Any = None,
     partitions: list[tuple[list[int], list[int]]] | None = None,
+    filters: list[tuple[np.ndarray, np.ndarray]] | None = None,
 ) -> Analysis:
-    """Return the reference analysis; with ``partitions``, of given odd vertices and targets."""
+    """Return the reference analysis; with ``partitions``, of given odd vertices and targets.
+
+    ``filters``, P and U of each step, stand in for those that are not in ``PREDICTIONS`` or
+    ``UPDATES``; all others are worked out here.
+    """
     columns = np.asarray(vertices, dtype=float)
     if attributes is not None and np.size(attributes):
         columns = np.column_stack([columns, attributes])
@@ -498,7 +513,11 @@ def analyse(
         p = np.zeros((len(odd), len(even)))
         support = []
         for k, v in enumerate(odd):
-            weights = prediction_weights(prediction, points, plan, level_faces, v, target[k])
+            if prediction in PREDICTIONS:
+                weights = prediction_weights(prediction, points, plan, level_faces, v, target[k])
+            else:
+                row = filters[step][0][k]
+                weights = {even[m]: row[m] for m in np.flatnonzero(row)}
             for neighbour, weight in weights.items():
                 p[k, position[neighbour]] = weight
             ring = [m for m in weights if not is_locked[m]]
@@ -509,7 +528,12 @@ def analyse(
         s_even, s_odd = columns[even][:, lifted], columns[odd][:, lifted]
         w = s_odd - p @ s_even  # Eq. 30
         coarse_zeta = zeta[even] + p.T @ zeta[odd]  # Eq. 47
-        u = None if update == "none" else update_matrix(update, p, support, zeta[odd], coarse_zeta)
+        if update not in UPDATES:
+            u = filters[step][1]
+        elif update == "none":
+            u = None
+        else:
+            u = update_matrix(update, p, support, zeta[odd], coarse_zeta)
         if update == "one_ring_mean":
             s = one_ring_mean_update(s_even, w, p, support)
         else:

@@ -37,6 +37,9 @@ class Altered:
     def __getattr__(self, name):
         return self._answers.get(name, getattr(self._pyramid, name))
 
+    def __iter__(self):
+        return iter(self._pyramid)
+
 
 def test_the_sound_pyramid_passes(pyramid, mesh):
     helpers.assert_pyramid_is_consistent(pyramid, mesh)

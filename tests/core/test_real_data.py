@@ -8,8 +8,6 @@ from wavelet_core import TriangleMesh, analyse
 
 pytestmark = [pytest.mark.data, pytest.mark.large]
 
-PAIRS = [(p, u) for p in helpers.ALL_PREDICTIONS for u in helpers.UPDATES]
-
 
 def read_window(path, n_rows, n_columns):
     """Return the mesh of a corner of a DEM, in metres."""
@@ -53,7 +51,7 @@ def terrains(data_folder):
 
 
 @pytest.mark.parametrize("signal", ["z", "xyz"])
-@pytest.mark.parametrize(("prediction", "update"), PAIRS)
+@pytest.mark.parametrize(("prediction", "update"), helpers.PAIRS)
 def test_all_filter_pairs_over_24_levels(terrains, prediction, update, signal):
     for name in ("dem of degrees, integers", "lidar"):
         mesh = terrains[name]

@@ -8,11 +8,12 @@ from qgis_layers import Log, hills, read_raster, wkt_layer, write_las, write_ras
 
 FOLDER = Path(__file__).resolve().parent.parent.parent / "processing_models"
 
+#: Public ids, which never change, and what people read.
 MODELS = {
-    "DEM to coarse TIN and details": "dem_to_coarse_tin_and_details.model3",
-    "DEM and breaklines to hydraulic mesh": "dem_and_breaklines_to_hydraulic_mesh.model3",
-    "Point cloud to filtered DEM": "point_cloud_to_filtered_dem.model3",
-    "DEM to denoised DEM and report": "dem_to_denoised_dem_and_report.model3",
+    "dem_to_coarse_tin": "DEM to coarse TIN and details",
+    "dem_to_hydraulic_mesh": "DEM and breaklines to hydraulic mesh",
+    "point_cloud_to_dem": "Point cloud to filtered DEM",
+    "dem_to_denoised_dem": "DEM to denoised DEM and report",
 }
 
 
@@ -44,13 +45,15 @@ def run_model(provider):
 
 
 def test_every_file_is_listed_here():
-    assert {path.name for path in FOLDER.glob("*.model3")} == set(MODELS.values())
+    assert {path.stem for path in FOLDER.glob("*.model3")} == set(MODELS)
 
 
 @pytest.mark.parametrize("name", MODELS)
 def test_the_provider_lists_the_model_with_help_and_outputs(provider, name):
     model = provider.algorithm(name)
     assert model is not None, [a.name() for a in provider.algorithms()]
+    assert model.displayName() == model.create().displayName() == MODELS[name]
+    assert model.id() == model.create().id() == f"terrainwavelets:{name}"
     assert model.group()
     assert len(model.shortHelpString()) > 100
     outputs = [o for o in model.outputDefinitions() if o.description()]
@@ -63,11 +66,11 @@ def test_the_provider_lists_the_model_with_help_and_outputs(provider, name):
 
 def test_dem_to_coarse_tin_and_details(run_model, dem):
     results, layers = run_model(
-        "DEM to coarse TIN and details",
+        "dem_to_coarse_tin",
         {
-            "dem": dem,
-            "levels": 4,
-            "min_magnitude": 0.1,
+            "INPUT": dem,
+            "LEVELS": 4,
+            "MIN_MAGNITUDE": 0.1,
             "pyramid": "TEMPORARY_OUTPUT",
             "coarse_tin": "TEMPORARY_OUTPUT",
             "details_by_level": "TEMPORARY_OUTPUT",
@@ -84,11 +87,11 @@ def test_dem_to_coarse_tin_and_details(run_model, dem):
 def test_dem_and_breaklines_to_hydraulic_mesh(run_model, dem, tmp_path):
     lines = wkt_layer("LineString", ["LineString (700100 6599900, 700700 6599500)"])
     results, layers = run_model(
-        "DEM and breaklines to hydraulic mesh",
+        "dem_to_hydraulic_mesh",
         {
-            "dem": dem,
-            "breaklines": lines,
-            "vertices": 500,
+            "INPUT": dem,
+            "BREAKLINES": lines,
+            "TARGET_VERTICES": 500,
             "hydraulic_mesh": str(tmp_path / "mesh.2dm"),
             "triangles_of_the_mesh": "TEMPORARY_OUTPUT",
         },
@@ -109,10 +112,10 @@ def test_dem_to_denoised_dem_and_report(run_model, tmp_path):
     rough = hills(60, 60).astype("float32")
     dem = write_raster(tmp_path / "dem.tif", rough, -9999.0)
     results, layers = run_model(
-        "DEM to denoised DEM and report",
+        "dem_to_denoised_dem",
         {
-            "dem": dem,
-            "noise": 0.5,
+            "INPUT": dem,
+            "SIGMA_OF_NOISE": 0.5,
             "denoised_dem": str(tmp_path / "denoised.tif"),
             "difference": str(tmp_path / "difference.tif"),
             "quality_report": str(tmp_path / "report.html"),
@@ -143,12 +146,12 @@ def test_point_cloud_to_filtered_dem(run_model, tmp_path):
     xyz = np.column_stack([700000.0 + plan[:, 0], 6600000.0 + plan[:, 1], z])
     points = write_las(tmp_path / "points.las", xyz, classification=np.where(is_tree, 5, 2))
     results, _ = run_model(
-        "Point cloud to filtered DEM",
+        "point_cloud_to_dem",
         {
-            "points": points,
-            "classes": "2",
-            "noise": 0.3,
-            "cell_size": 20.0,
+            "INPUT": points,
+            "CLASSES": "2",
+            "SIGMA_OF_NOISE": 0.3,
+            "CELL_SIZE": 20.0,
             "filtered_pyramid": str(tmp_path / "pyramid.gpkg"),
             "filtered_dem": str(tmp_path / "dem.tif"),
         },
@@ -162,3 +165,50 @@ def test_point_cloud_to_filtered_dem(run_model, tmp_path):
     # Without trees, and nearer to the terrain than the points were.
     assert np.isfinite(error).sum() > 2000
     assert np.sqrt(np.nanmean(error**2)) < 0.25
+
+
+class TestParametersLeftOut:
+    """What a caller leaves out has the value that the dialog shows, not none at all."""
+
+    def test_levels_and_magnitude(self, run_model, provider, dem):
+        shown = provider.algorithm("dem_to_coarse_tin").parameterDefinition("LEVELS")
+        _, layers = run_model(
+            "dem_to_coarse_tin",
+            {
+                "INPUT": dem,
+                "pyramid": "TEMPORARY_OUTPUT",
+                "details_by_level": "TEMPORARY_OUTPUT",
+            },
+        )
+        levels = layers["Details by level"].uniqueValues(1)
+        assert levels == set(range(shown.defaultValue()))
+
+    def test_size_of_the_mesh(self, run_model, tmp_path):
+        dem = write_raster(tmp_path / "large.tif", hills(160, 160).astype("float32"))
+        results, _ = run_model(
+            "dem_to_hydraulic_mesh",
+            {"INPUT": dem, "hydraulic_mesh": str(tmp_path / "mesh.2dm")},
+        )
+        text = Path(results["hydraulic_mesh"]).read_text()
+        assert sum(line.startswith("ND") for line in text.splitlines()) == 20000
+
+    def test_classes(self, run_model, tmp_path):
+        pytest.importorskip("laspy")
+        plan = np.random.default_rng(2).random((400, 2)) * 200 + [700000, 6600000]
+        is_tree = np.arange(400) % 4 == 0
+        z = np.where(is_tree, 150.0, 100.0)
+        points = write_las(
+            tmp_path / "points.las",
+            np.column_stack([plan, z]),
+            classification=np.where(is_tree, 5, 2),
+        )
+        results, _ = run_model(
+            "point_cloud_to_dem",
+            {
+                "INPUT": points,
+                "filtered_pyramid": str(tmp_path / "p.gpkg"),
+                "filtered_dem": str(tmp_path / "dem.tif"),
+            },
+        )
+        raster = read_raster(results["filtered_dem"])
+        assert np.nanmax(np.frombuffer(raster["bytes"], "f4")) < 101

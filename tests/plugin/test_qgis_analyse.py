@@ -241,6 +241,24 @@ class TestLevels:
         project.clear()
 
 
+def samples_along(line, n=1000):
+    """Return points in plan at equal distances along a line, its ends left out."""
+    along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    at = (np.arange(n) + 0.5) / n * along[-1]
+    return np.column_stack([np.interp(at, along, column) for column in line.T])
+
+
+def heights_on(triangles, plan):
+    """Return the height of a TIN at positions; NaN where it has none."""
+    heights = np.full(len(plan), np.nan)
+    for a, b, c in triangles:
+        system = np.array([b[:2] - a[:2], c[:2] - a[:2]]).T
+        u, v = np.linalg.solve(system, (plan - a[:2]).T)
+        inside = (u > -1e-9) & (v > -1e-9) & (u + v < 1 + 1e-9)
+        heights[inside] = (a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2]))[inside]
+    return heights
+
+
 class TestPointsAndTins:
     def test_points_with_attributes_breaklines_clip_and_locks(self, run, tmp_path):
         xyz = survey()
@@ -280,6 +298,45 @@ class TestPointsAndTins:
             assert not (min(xs) < 700499 and max(xs) > 700501 and min(ys) < 6600700)
             inside = min(xs) >= 700100 - 1e-6 and max(xs) <= 700900 + 1e-6
             assert not (inside and min(ys) < 6600499 and max(ys) > 6600501)
+
+    def test_lines_without_z_lie_on_the_terrain_at_all_of_their_points(self, run, tmp_path):
+        from scipy.interpolate import LinearNDInterpolator
+
+        xyz = survey()
+        tolerance = 0.25
+        line = np.array([[700100.0, 6600200], [700850, 6600420], [700300, 6600900]])
+        ring = np.array(
+            [[700060.0, 6600050], [700930, 6600080], [700900, 6600960], [700080, 6600930]]
+        )
+        ring = np.vstack([ring, ring[:1]])
+        text = [", ".join(f"{x} {y}" for x, y in part) for part in (line, ring)]
+        made = run(
+            "analysetin",
+            {
+                "INPUT": point_layer(xyz),
+                "BREAKLINES": wkt_layer("LineString", [f"LineString ({text[0]})"]),
+                "CLIP": wkt_layer("Polygon", [f"Polygon (({text[1]}))"]),
+                "LINE_TOLERANCE": tolerance,
+                "TARGET_VERTICES": 500,
+                "OUTPUT": str(tmp_path / "p.gpkg"),
+                "COARSE_TIN": "TEMPORARY_OUTPUT",
+            },
+        )
+        assert made["COARSE_VERTICES"] == 500
+        terrain = LinearNDInterpolator(xyz[:, :2] - xyz[0, :2], xyz[:, 2])
+        triangles = np.array(
+            [
+                [(p.x(), p.y(), p.z()) for p in list(feature.geometry().vertices())[:3]]
+                for feature in made["COARSE_TIN"].getFeatures()
+            ]
+        )
+        for name, part in (("line", line), ("ring", ring)):
+            distance = heights_on(triangles, samples_along(part)) - terrain(
+                samples_along(part) - xyz[0, :2]
+            )
+            assert np.isfinite(distance).sum() > 900
+            assert np.nanmax(np.abs(distance)) <= tolerance + 1e-6, name
+        assert 0 < made["RMSE_LINES"] <= made["MAX_ERROR_LINES"] <= tolerance + 1e-9
 
     def test_a_field_gives_the_elevation_and_a_selection_is_respected(self, run, tmp_path):
         import processing

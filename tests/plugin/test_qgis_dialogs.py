@@ -21,10 +21,10 @@ ALGORITHMS = (
     "clusterdetails",
     "filterlevels",
     "qualityreport",
-    "DEM to coarse TIN and details",
-    "DEM and breaklines to hydraulic mesh",
-    "Point cloud to filtered DEM",
-    "DEM to denoised DEM and report",
+    "dem_to_coarse_tin",
+    "dem_to_hydraulic_mesh",
+    "point_cloud_to_dem",
+    "dem_to_denoised_dem",
 )
 KEPT = os.environ.get("TERRAIN_WAVELETS_PICTURES")
 
@@ -91,19 +91,21 @@ def test_toolbox_lists_the_provider(qgis, keep, monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def pyramid(qgis, data_folder, tmp_path_factory):
-    """Return the path of a pyramid; of real terrain where the data are at hand."""
+def pyramid_by(qgis, data_folder, tmp_path_factory):
+    """Return a function to the path of a pyramid; of real terrain where the data are at hand."""
     import processing
 
     folder = tmp_path_factory.mktemp("pictures")
     path = data_folder / "dems" / "lidar_dem_400.tif"
     if not path.is_file():
         path = write_raster(folder / "d.tif", hills(200, 300).astype("float32"))
-    made = processing.run(
-        "terrainwavelets:analysedem",
-        {"INPUT": str(path), "LEVELS": 8, "OUTPUT": str(folder / "p.gpkg")},
-    )
-    return made["OUTPUT"]
+
+    def analysed(name, **options):
+        output = str(folder / f"{name}.gpkg")
+        parameters = {"INPUT": str(path), "LEVELS": 8, "OUTPUT": output, **options}
+        return processing.run("terrainwavelets:analysedem", parameters)["OUTPUT"]
+
+    return analysed
 
 
 def map_of(layers, width=900, height=640):
@@ -126,17 +128,37 @@ def map_of(layers, width=900, height=640):
     return job.renderedImage()
 
 
-def test_styled_results(qgis, pyramid, tmp_path, keep):
+def test_styled_results(qgis, pyramid_by, tmp_path, keep):
+    pytest.importorskip("sklearn")
     import processing
     from qgis.core import QgsProcessingContext, QgsProject
 
     project = QgsProject.instance()
     context = QgsProcessingContext()
     context.setProject(project)
-    for algorithm, parameters in (
-        ("extractlevel", {"LEVEL": 0, "TIN": "TEMPORARY_OUTPUT"}),
-        ("detaillayers", {"LAST_LEVEL": 3, "OUTPUT": "TEMPORARY_OUTPUT"}),
-        ("reconstruct", {"DEM": str(tmp_path / "dem.tif")}),
+    surface = pyramid_by("surface")
+    # Levels that mean the same scale everywhere.
+    scales = pyramid_by("scales", PARTITION="random", PREDICTION="plane")
+    for pyramid, algorithm, parameters in (
+        (surface, "extractlevel", {"LEVEL": 0, "TIN": "TEMPORARY_OUTPUT"}),
+        (surface, "detaillayers", {"LAST_LEVEL": 3, "OUTPUT": "TEMPORARY_OUTPUT"}),
+        (surface, "reconstruct", {"DEM": str(tmp_path / "dem.tif")}),
+        (surface, "extractlevel", {"LEVEL": 1, "VERTICES": "TEMPORARY_OUTPUT"}),
+        (
+            scales,
+            "detaillayers",
+            {"OUTPUT": str(tmp_path / "d.gpkg"), "ENERGY": "TEMPORARY_OUTPUT"},
+        ),
+        (
+            scales,
+            "filterlevels",
+            {"LAST_LEVEL": 3, "DEM": "TEMPORARY_OUTPUT", "DIFFERENCE": "TEMPORARY_OUTPUT"},
+        ),
+        (
+            scales,
+            "clusterdetails",
+            {"COUNT": 4, "RASTER": "TEMPORARY_OUTPUT", "OUTPUT": "TEMPORARY_OUTPUT"},
+        ),
     ):
         processing.runAndLoadResults(
             f"terrainwavelets:{algorithm}", {"INPUT": pyramid, **parameters}, context=context
@@ -146,4 +168,10 @@ def test_styled_results(qgis, pyramid, tmp_path, keep):
     keep(map_of([by_name["TIN of the level"]]), "result_tin")
     keep(map_of([by_name["Details by level"], hillshade]), "result_details")
     keep(map_of([hillshade]), "result_hillshade")
+    keep(map_of([by_name["Energy by level"]]), "result_energy")
+    keep(map_of([by_name["Difference of the DEMs"]]), "result_difference")
+    keep(map_of([by_name["Vertices of the level"], hillshade]), "result_vertices")
+    by_name["Map of clusters"].setOpacity(0.6)
+    keep(map_of([by_name["Map of clusters"], hillshade]), "result_clusters")
+    keep(map_of([by_name["Clustered vertices"]]), "result_clustered_vertices")
     project.clear()

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from qgis_fixtures import COMMAND
-from qgis_layers import assert_same_raster, hills, write_raster
+from qgis_layers import assert_same_raster, hills, survey, write_las, write_raster
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -93,7 +93,6 @@ def test_without_numba_large_inputs_are_refused_with_the_remedy(qgis_process, tm
         ("scipy", "analysedem", "dem.tif"),
         ("laspy", "analysepointcloud", "points.las"),
         ("lazrs", "analysepointcloud", "points.laz"),
-        ("pythoncdt", "analysepointcloud", "points.las"),
     ],
 )
 def test_a_missing_package_is_named_with_its_remedy(
@@ -109,6 +108,13 @@ def test_a_missing_package_is_named_with_its_remedy(
     assert f"missing Python package: {hidden}" in text
     assert "install" in text
     assert not (tmp_path / "o.gpkg").exists()
+
+
+def test_without_pythoncdt_a_cloud_is_triangulated_by_scipy(qgis_process, tmp_path):
+    pytest.importorskip("laspy")
+    path = write_las(tmp_path / "points.las", survey(300))
+    parameters = {"INPUT": path, "LEVELS": 3, "OUTPUT": str(tmp_path / "o.gpkg")}
+    assert qgis_process("analysepointcloud", parameters, ["pythoncdt"])["N_VERTICES"] == 300
 
 
 @pytest.mark.parametrize(("hidden", "suffix"), [("trimesh", ".glb"), ("ezdxf", ".dxf")])

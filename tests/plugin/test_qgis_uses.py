@@ -242,12 +242,15 @@ class TestSimplify:
         from qgis.core import QgsProcessingContext
 
         algorithm = provider.algorithm("simplifydem").create()
-        for rules in ({}, {"VERTICES": 5, "RMSE": 1.0}):
-            is_fine, message = algorithm.checkParameterValues(
-                {"INPUT": dem, **rules}, QgsProcessingContext()
-            )
-            assert not is_fine
-            assert "one of the three" in message
+        is_fine, message = algorithm.checkParameterValues(
+            {"INPUT": dem, "VERTICES": 5, "RMSE": 1.0}, QgsProcessingContext()
+        )
+        assert not is_fine
+        assert "one of three" in message
+
+    def test_without_a_rule_a_twentieth_of_the_cells_stays(self, run, dem):
+        made = run("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT"})
+        assert made["N_VERTICES"] == round(made["N_INPUT_VERTICES"] / 20)
 
 
 def test_report_needs_no_network(run, pyramid, tmp_path):
@@ -285,17 +288,177 @@ def test_two_in_batch(provider, pyramid, tmp_path):
     assert sizes[1] > sizes[0]
 
 
-def test_the_choices_are_served_by_the_core(qgis):
-    from terrain_wavelets.plugin.parameters import analysis_options as design
-    from terrain_wavelets.plugin.parameters import mesh_output
+@pytest.fixture
+def opened(qgis):
+    """Return a function that runs an algorithm and returns the layers that it opens, by name."""
+    import processing
+    from qgis.core import QgsProcessingContext, QgsProject
 
-    from wavelet_core.lifting.options import PARTITIONS, SIGNALS
-    from wavelet_core.lifting.prediction import PREDICTIONS
-    from wavelet_core.lifting.update import UPDATES
-    from wavelet_gis.io.meshes import MESH_SUFFIXES
+    project = QgsProject.instance()
 
-    assert set(design.PARTITIONS) <= set(PARTITIONS)
-    assert set(design.PREDICTIONS) <= set(PREDICTIONS.values())
-    assert set(design.UPDATES) == set(UPDATES.values())
-    assert set(design.SIGNALS) == set(SIGNALS)
-    assert set(mesh_output.FORMATS) == set(MESH_SUFFIXES)
+    def run_and_open(name, parameters):
+        context = QgsProcessingContext()
+        context.setProject(project)
+        processing.runAndLoadResults(f"terrainwavelets:{name}", parameters, context=context)
+        return {layer.name(): layer for layer in project.mapLayers().values()}
+
+    yield run_and_open
+    project.clear()
+
+
+class TestEveryOutputOpensStyled:
+    def test_energy_is_one_band_in_a_ramp_from_nothing(self, opened, pyramid):
+        parameters = {"INPUT": pyramid, "OUTPUT": "TEMPORARY_OUTPUT", "ENERGY": "TEMPORARY_OUTPUT"}
+        renderer = opened("detaillayers", parameters)["Energy by level"].renderer()
+        assert renderer.type() == "singlebandpseudocolor"
+        assert renderer.classificationMin() == 0
+        assert renderer.classificationMax() > 0
+
+    def test_a_difference_is_white_where_nothing_changed(self, opened, pyramid):
+        parameters = {
+            "INPUT": pyramid,
+            "LAST_LEVEL": 3,
+            "DEM": "TEMPORARY_OUTPUT",
+            "DIFFERENCE": "TEMPORARY_OUTPUT",
+        }
+        layer = opened("filterlevels", parameters)["Difference of the DEMs"]
+        items = layer.renderer().shader().rasterShaderFunction().colorRampItemList()
+        values = [item.value for item in items]
+        assert values[0] == -values[-1] < 0
+        (middle,) = (item for item in items if item.value == 0)
+        assert middle.color.getRgb()[:3] == (247, 247, 247)
+
+    def test_vertices_of_a_level_and_a_temporary_mesh(self, opened, pyramid):
+        parameters = {
+            "INPUT": pyramid,
+            "TIN": "TEMPORARY_OUTPUT",
+            "VERTICES": "TEMPORARY_OUTPUT",
+            "MESH": "TEMPORARY_OUTPUT",
+        }
+        layers = opened("extractlevel", parameters)
+        assert set(layers) == {"TIN of the level", "Vertices of the level", "Mesh of the level"}
+        symbol = layers["Vertices of the level"].renderer().symbol()
+        assert symbol.color().getRgb()[:3] == (60, 60, 60)
+
+    def test_a_cluster_has_one_colour_as_raster_and_as_points(self, opened, pyramid):
+        pytest.importorskip("sklearn")
+        parameters = {
+            "INPUT": pyramid,
+            "COUNT": 3,
+            "RASTER": "TEMPORARY_OUTPUT",
+            "OUTPUT": "TEMPORARY_OUTPUT",
+        }
+        layers = opened("clusterdetails", parameters)
+        of_cells = {
+            int(c.value): c.color.name() for c in layers["Map of clusters"].renderer().classes()
+        }
+        of_points = {
+            int(c.value()): c.symbol().color().name()
+            for c in layers["Clustered vertices"].renderer().categories()
+        }
+        assert of_cells == of_points
+        assert len(set(of_cells.values())) == 3
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["mesh from dem", "tin", "decimate", "thin", "generalise", "generalize", "dem to tin"],
+)
+def test_the_toolbox_finds_the_way_from_a_dem_to_a_tin(provider, words):
+    algorithm = provider.algorithm("simplifydem")
+    shown = [algorithm.displayName(), algorithm.shortDescription(), *algorithm.tags()]
+    text = " ".join(shown).lower()
+    assert all(word in text for word in words.split())
+
+
+def test_every_algorithm_is_described_in_one_line(provider):
+    for algorithm in provider.algorithms():
+        if algorithm.group() != "Models":
+            assert 20 < len(algorithm.shortDescription()) < 100, algorithm.name()
+
+
+def test_a_dialog_offers_what_the_tables_hold(provider):
+    import wavelet_core
+    from wavelet_gis.io.formats import MESH_FORMATS
+
+    algorithm = provider.algorithm("simplifydem")
+    for name in ("PARTITION", "NORM", "PREDICTION", "UPDATE", "SIGNAL"):
+        parameter = algorithm.parameterDefinition(name)
+        table = getattr(wavelet_core, f"{name}S")
+        assert parameter.options() == ["default", *table]
+        assert all(row.help in parameter.help() for row in table.values())
+    mesh = algorithm.parameterDefinition("MESH")
+    assert all(f"(*{row.suffix})" in mesh.fileFilter() for row in MESH_FORMATS)
+    assert mesh.fileFilter().startswith("2DM")
+
+
+def test_a_new_row_of_a_table_is_in_the_dialog(qgis, monkeypatch):
+    from terrain_wavelets.plugin.algorithms import ALGORITHMS
+
+    import wavelet_core
+    from wavelet_gis.io import formats
+
+    first = next(iter(wavelet_core.PREDICTIONS.values()))
+    new = first._replace(name="median", short="MD", help="the median of the neighbours")
+    monkeypatch.setitem(wavelet_core.PREDICTIONS, "median", new)
+    row = formats.MeshFormat(".msh", "Gmsh", "a:b", "finite elements")
+    monkeypatch.setattr(formats, "MESH_FORMATS", (*formats.MESH_FORMATS, row))
+    (algorithm,) = (a() for a in ALGORITHMS if a().name() == "simplifydem")
+    algorithm.initAlgorithm()
+    prediction = algorithm.parameterDefinition("PREDICTION")
+    assert "median" in prediction.options()
+    assert "the median of the neighbours (MD" in prediction.help()
+    assert "Gmsh (*.msh)" in algorithm.parameterDefinition("MESH").fileFilter()
+
+
+def test_dialogs_open_without_scipy_and_say_what_is_missing(qgis, monkeypatch):
+    from qgis.core import QgsProcessingContext
+    from terrain_wavelets.plugin.algorithms import ALGORITHMS
+    from terrain_wavelets.plugin.ui import dependencies
+
+    find = dependencies.missing
+    gone = dependencies.SCIPY
+    monkeypatch.setattr(
+        dependencies, "missing", lambda packages: [p for p in packages if p == gone or find([p])]
+    )
+    for kind in ALGORITHMS:
+        algorithm = kind()
+        algorithm.initAlgorithm()
+        is_fine, message = algorithm.checkParameterValues({}, QgsProcessingContext())
+        assert not is_fine
+        assert "missing Python package: scipy" in message
+
+
+def test_a_command_for_a_terminal_is_quoted(qgis, monkeypatch):
+    from terrain_wavelets.plugin.ui import dependencies
+
+    monkeypatch.setattr(dependencies.sys, "platform", "darwin")
+    assert "'laspy[lazrs]'" in dependencies.remedy([dependencies.LASPY])
+    monkeypatch.setattr(dependencies.sys, "platform", "win32")
+    assert '"laspy[lazrs]"' in dependencies.remedy([dependencies.LASPY])
+
+
+def test_a_cloud_needs_no_pythoncdt_and_breaklines_do(provider, tmp_path):
+    from qgis.core import QgsProcessingContext
+    from terrain_wavelets.plugin.parameters.request import Request
+    from terrain_wavelets.plugin.ui import dependencies
+
+    def needed(name, parameters):
+        algorithm = provider.algorithm(name)
+        return algorithm.packages(Request(algorithm, parameters, QgsProcessingContext()))
+
+    assert dependencies.PYTHONCDT not in needed("analysepointcloud", {"INPUT": "a.laz"})
+    assert needed("analysetin", {"INPUT": "a.gpkg"}) == ()
+    assert needed("analysetin", {"BREAKLINES": "b.gpkg"}) == (dependencies.PYTHONCDT,)
+
+
+def test_an_error_names_parameters_as_the_dialog_does(provider):
+    from wavelet_core import OptionError
+
+    error = OptionError("{0} is {given}; leave out {1}.", "max_rms", "target_vertices", given=-1)
+    assert provider.algorithm("simplifydem").in_words(error) == (
+        "'RMSE' is -1; leave out 'Number of vertices'."
+    )
+    assert provider.algorithm("analysedem").in_words(error) == (
+        "'Stop at this RMSE' is -1; leave out 'Stop at this number of vertices'."
+    )

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._kernels.quadric import ROUNDING
 from ._csr import summed
 from ._rings import by_size, rings
+from .lattice import on_lattice
 
 
 def star_quadrics(start, stop, points, faces, indptr, star, quadrics):
@@ -72,7 +74,19 @@ def ring_costs(start, stop, points, quadrics, indptr, ring, ring_size, cost):
         total = np.zeros((len(v), quadrics.shape[1]))
         for k in range(size):
             total += quadrics[around[:, k]]
-        cost[v] = np.maximum(evaluate(total, points[v]), 0.0)
+        exact = np.maximum(evaluate(total, points[v]), 0.0)
+        cost[v] = on_lattice(exact, ROUNDING * _magnitude(total, points[v]))
+
+
+def _magnitude(quadrics, points):
+    d = points.shape[1]
+    slot = 0
+    trace, squared = np.zeros(len(points)), np.zeros(len(points))
+    for i in range(d):
+        trace += quadrics[:, slot]
+        squared += points[:, i] * points[:, i]
+        slot += d - i
+    return trace * (1.0 + squared)
 
 
 def spread_quadrics(odd, even, row_indptr, columns, weights, quadrics):

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._kernels.surface_choice import CANDIDATE, TAKEN
 from ._csr import expanded
-from .half_edges import after, find_twins, rings_of, set_outgoing
+from .half_edges import after, before, find_twins, rings_of, set_outgoing
 
 
 def find_cheapest(start, stop, active, mesh, state, cost, key, wins):
@@ -40,12 +40,39 @@ def record_rings(start, stop, odd, target, mesh, indptr, ring, ring_faces):
     ring_faces[:] = np.where(column < rings.n_sides[row], rings.spoke[row, column] // 3, -1)
 
 
-def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, stamp, is_taken):
+def check_links(start, stop, odd, target, mesh, is_linked):
+    rings = rings_of(odd, mesh)
+    for size, n_sides in np.unique(np.column_stack([rings.size, rings.n_sides]), axis=0):
+        rows = np.flatnonzero((rings.size == size) & (rings.n_sides == n_sides))
+        is_linked[rows] = are_linked(rings.ring[rows, :size], target[rows], n_sides, mesh)
+
+
+def are_linked(ring, target, n_sides, mesh):
+    """Tell of each ring whether it shares with the target's but the vertices beside the target."""
+    n, size = ring.shape
+    shared = np.zeros(n, dtype=np.int64)
+    active, half_edge = np.arange(n), mesh.outgoing[target]
+    opening = half_edge
+    while len(active):
+        last = before(half_edge)
+        u = mesh.origin[after(half_edge)]
+        shared[active] += (ring[active] == u[:, None]).any(axis=1)
+        half_edge = mesh.twin[last]
+        is_open = half_edge < 0
+        ends = active[is_open]
+        u = mesh.origin[last[is_open]]
+        shared[ends] += (ring[ends] == u[:, None]).any(axis=1)
+        goes_on = ~is_open & (half_edge != opening[active])
+        active, half_edge = active[goes_on], half_edge[goes_on]
+    return shared == (2 if n_sides == size else 1)
+
+
+def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, is_taken):
     size = np.diff(indptr)
     row, place = expanded(indptr[:-1], size)
-    is_taken[:] = _keeps_links(odd, indptr, ring, ring_faces, mesh, face_lives, row, place)
-    taken = np.flatnonzero(is_taken)
-    vertex_lives[odd[taken]] = False
+    check_links(0, len(odd), odd, ring[indptr[:-1]], mesh, is_taken)
+    _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken)
+    vertex_lives[odd[is_taken]] = False
     a = ring[indptr[:-1]]
     with_face = is_taken[row] & (ring_faces >= 0)
     faces, source, onto = ring_faces[with_face], odd[row[with_face]], a[row[with_face]]
@@ -59,13 +86,14 @@ def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, 
     _link_again(mesh, face_lives)
 
 
-def _keeps_links(odd, indptr, ring, ring_faces, mesh, face_lives, row, place):
-    """Link condition of every collapse, those before it in the list counted as done."""
-    size = np.diff(indptr)
+def _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken):
+    """Refuse what an edge forbids that a collapse before it in the list has made.
+
+    No two odd vertices are neighbours, so a collapse takes no edge between vertices that stay; it
+    only makes edges from its target to the rest of its ring. One that two would make is the first's.
+    """
     a = ring[indptr[:-1]]
     n = len(mesh.outgoing)
-    n_sides = np.bincount(row[ring_faces >= 0], minlength=len(odd))
-    needed = np.where(n_sides == size, 2, 1)
     # edges of the level that leave a target
     half_edges = (3 * np.flatnonzero(face_lives)[:, None] + np.arange(3)).ravel()
     tail, head = mesh.origin[half_edges], mesh.origin[after(half_edges)]
@@ -75,14 +103,8 @@ def _keeps_links(odd, indptr, ring, ring_faces, mesh, face_lives, row, place):
     asked = is_target[tail]
     edges = np.unique(tail[asked].astype(np.int64) * n + head[asked])
     spokes = a[row].astype(np.int64) * n + ring[place]
-    is_edge = _contains(edges, spokes)
-    shared = np.bincount(row[is_edge], minlength=len(odd))
-    keeps = shared == needed
-    # edges that the collapses make; two that share one, or both ends of one, may be in each
-    # other's way, and are decided in order
-    makes = keeps[row] & ~is_edge & (place > indptr[row])
-    made = spokes[makes]
-    maker = row[makes]
+    makes = is_taken[row] & (place > indptr[row]) & ~_contains(edges, spokes)
+    made, maker = spokes[makes], row[makes]
     mirrored = ring[place[makes]].astype(np.int64) * n + a[maker]
     keys, makers = np.concatenate([made, mirrored]), np.concatenate([maker, maker])
     order = np.argsort(keys, kind="stable")
@@ -90,14 +112,13 @@ def _keeps_links(odd, indptr, ring, ring_faces, mesh, face_lives, row, place):
     low = np.searchsorted(keys, made, side="left")
     high = np.searchsorted(keys, made, side="right")
     which, entry = expanded(low, high - low)
-    contested, other = maker[which], makers[entry]
-    is_earlier = other < contested
-    contested, other = contested[is_earlier], other[is_earlier]
-    order = np.lexsort((other, contested))
-    for w, v in zip(contested[order].tolist(), other[order].tolist(), strict=True):
-        if keeps[w] and keeps[v]:
-            keeps[w] = False
-    return keeps
+    later, earlier = maker[which], makers[entry]
+    differs = earlier < later
+    later, earlier = later[differs], earlier[differs]
+    order = np.lexsort((earlier, later))
+    for second, first in zip(later[order].tolist(), earlier[order].tolist(), strict=True):
+        if is_taken[second] and is_taken[first]:
+            is_taken[second] = False
 
 
 def _contains(sorted_keys, keys):

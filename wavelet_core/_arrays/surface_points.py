@@ -6,6 +6,7 @@ import numpy as np
 
 from ._csr import blocks, expanded, summed
 from .half_edges import before
+from .outline import is_straight, nearest_on_edge
 
 #: Points that are looked at together: a bound on the memory.
 POINTS_AT_ONCE = 1 << 20
@@ -19,7 +20,7 @@ def count_points(start, stop, indptr, ring_faces, points, size):
 
 def hand_over(
     start, stop, odd, indptr, ring, ring_faces, surface, points, first, face_changed,
-    corners, weights, details,
+    squared_tolerance, corners, weights, details,
 ):  # fmt: skip
     sizes = np.diff(indptr)
     totals = np.diff(first)
@@ -28,13 +29,13 @@ def hand_over(
         for part in blocks(totals[rows] + size, POINTS_AT_ONCE):
             _hand_over_rows(
                 rows[part], int(size), odd, indptr, ring, ring_faces, surface, points, first,
-                face_changed, corners, weights, details,
+                face_changed, squared_tolerance, corners, weights, details,
             )  # fmt: skip
 
 
 def _hand_over_rows(
-    rows, size, odd, indptr, ring, ring_faces, surface, points, first, face_changed, corners,
-    weights, details,
+    rows, size, odd, indptr, ring, ring_faces, surface, points, first, face_changed,
+    squared_tolerance, corners, weights, details,
 ):  # fmt: skip
     n, n_wedges = len(rows), size - 2
     place = indptr[rows][:, None] + np.arange(size)
@@ -42,17 +43,33 @@ def _hand_over_rows(
     v, a = odd[rows], around[:, 0]
     ax, ay = surface.x[a], surface.y[a]
     bx, by = surface.x[around[:, 1:]] - ax[:, None], surface.y[around[:, 1:]] - ay[:, None]
+    cut = _cut_edges(v, around, faces, surface, squared_tolerance)
 
-    has_points = (faces >= 0) & (points.n_points[np.maximum(faces, 0)] > 0)
-    counts = np.where(has_points, points.n_points[np.maximum(faces, 0)], 0)
+    counts = np.where(faces >= 0, points.n_points[np.maximum(faces, 0)], 0)
     cell, source = expanded(points.start[np.maximum(faces, 0)].ravel(), counts.ravel())
     of, k = cell // size, cell % size
     x, y = points.x[source] - ax[of], points.y[source] - ay[of]
-    wedge = locate(n_wedges, bx, by, of, x, y, np.clip(k - 1, 0, n_wedges - 1))
+    point_x, point_y = points.x[source], points.y[source]
     every = np.arange(n)
     own_x, own_y = surface.x[v] - ax, surface.y[v] - ay
     own = locate(n_wedges, bx, by, every, own_x, own_y, np.zeros(n, dtype=np.int64))
-    _predict(rows, own, own_x, own_y, around, bx, by, v, surface, corners, weights, details)
+    own, at_b, at_c = _weights(own, own_x, own_y, bx, by, every)
+    vertex_x, vertex_y = surface.x[v], surface.y[v]
+    if cut is not None:
+        is_cut, ends_at_target, px, py, qx, qy, along = cut
+        moved = np.flatnonzero(is_cut[of])
+        on = of[moved]
+        x[moved], y[moved], _ = nearest_on_edge(
+            x[moved], y[moved], px[on], py[on], qx[on], qy[on]
+        )
+        point_x[moved], point_y[moved] = ax[on] + x[moved], ay[on] + y[moved]
+        own = np.where(is_cut, np.where(ends_at_target, 0, n_wedges - 1), own)
+        at_b = np.where(is_cut, np.where(ends_at_target, 1.0 - along, 0.0), at_b)
+        at_c = np.where(is_cut, np.where(ends_at_target, 0.0, along), at_c)
+        vertex_x = np.where(is_cut, ax + px + along * (qx - px), vertex_x)
+        vertex_y = np.where(is_cut, ay + py + along * (qy - py), vertex_y)
+    wedge = locate(n_wedges, bx, by, of, x, y, np.clip(k - 1, 0, n_wedges - 1))
+    _predict(rows, own, at_b, at_c, around, v, surface, corners, weights, details)
 
     # the vertex itself first in its face, then the points in their order
     row = np.concatenate([every, of])
@@ -61,10 +78,10 @@ def _hand_over_rows(
     row, into = row[order], into[order]
     starts = np.cumsum(np.bincount(row, minlength=n)) - np.bincount(row, minlength=n)
     target = first[rows][row] + np.arange(len(row)) - starts[row]
-    new_x = np.concatenate([surface.x[v], points.x[source]])[order]
-    new_y = np.concatenate([surface.y[v], points.y[source]])[order]
     new_z = np.concatenate([surface.measured[v], points.z[source]])[order]
-    points.x[target], points.y[target], points.z[target] = new_x, new_y, new_z
+    points.x[target] = np.concatenate([vertex_x, point_x])[order]
+    points.y[target] = np.concatenate([vertex_y, point_y])[order]
+    points.z[target] = new_z
 
     n_here = np.bincount(row * n_wedges + into, minlength=n * n_wedges).reshape(n, n_wedges)
     begin = first[rows][:, None] + np.cumsum(n_here, axis=1) - n_here
@@ -77,15 +94,38 @@ def _hand_over_rows(
         points.n_points[gone[gone >= 0]] = 0
 
 
-def _predict(rows, t, x, y, around, bx, by, v, surface, corners, weights, details):
-    every = np.arange(len(rows))
-    a, b, c = around[:, 0], around[every, 1 + t], around[every, 2 + t]
+def _cut_edges(v, around, faces, surface, squared_tolerance):
+    """Tell which rows' new outline edge cuts their vertex off, and that edge from the target."""
+    if squared_tolerance <= 0.0:
+        return None
+    ends_at_target = faces[:, 0] < 0
+    a = around[:, 0]
+    p = np.where(ends_at_target, around[:, 1], a)
+    q = np.where(ends_at_target, a, around[:, -1])
+    x, y = surface.x, surface.y
+    px, py, qx, qy = x[p] - x[v], y[p] - y[v], x[q] - x[v], y[q] - y[v]
+    is_cut = (ends_at_target | (faces[:, -1] < 0)) & (px * qy - py * qx > 0.0)
+    is_cut &= ~is_straight(px, py, qx, qy)
+    zero = np.zeros(len(v))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        along = nearest_on_edge(zero, zero, px, py, qx, qy)[2]
+    along = np.where(is_cut, along, 0.0)
+    return is_cut, ends_at_target, x[p] - x[a], y[p] - y[a], x[q] - x[a], y[q] - y[a], along
+
+
+def _weights(t, x, y, bx, by, every):
+    """Weights of the outer corners of the wedge that holds the vertex, and that wedge."""
     b_x, b_y, c_x, c_y = bx[every, t], by[every, t], bx[every, t + 1], by[every, t + 1]
     doubled_area = b_x * c_y - b_y * c_x
     at_b = np.maximum((x * c_y - y * c_x) / doubled_area, 0.0)
     at_c = np.maximum((b_x * y - b_y * x) / doubled_area, 0.0)
     total = np.maximum(at_b + at_c, 1.0)
-    at_b, at_c = at_b / total, at_c / total
+    return t, at_b / total, at_c / total
+
+
+def _predict(rows, t, at_b, at_c, around, v, surface, corners, weights, details):
+    every = np.arange(len(rows))
+    a, b, c = around[:, 0], around[every, 1 + t], around[every, 2 + t]
     at_a = np.maximum(1.0 - at_b - at_c, 0.0)
     corners[rows] = np.column_stack([a, b, c])
     weights[rows] = np.column_stack([at_a, at_b, at_c])
@@ -129,20 +169,18 @@ def copy_points(start, stop, faces, first, points, x, y, z):
     x[:n], y[:n], z[:n] = points.x[place], points.y[place], points.z[place]
 
 
-def sum_over_faces(
-    start, stop, mesh, face_lives, face_changed, z_changed, surface, points,
-    squared, squared_z, largest_z, moments, is_stale, is_new, has_moved,
-):  # fmt: skip
+def sum_over_faces(start, stop, mesh, surface, points, vertices, faces, moments):
     corners = mesh.origin.reshape(-1, 3)
-    changed = face_lives & (face_changed | z_changed[corners].any(axis=1))
-    renewed = face_lives & face_changed
-    face_changed[renewed] = False
-    is_new[corners[renewed].ravel()] = True
-    faces = np.flatnonzero(changed)
-    touched = corners[faces].ravel()
-    is_stale[touched], has_moved[touched] = True, True
-    for part in blocks(points.n_points[faces] + 1, POINTS_AT_ONCE):
-        _sum_faces(faces[part], corners, surface, points, squared, squared_z, largest_z, moments)
+    z_changed = vertices.z_changed[corners].any(axis=1)
+    renewed = faces.lives & faces.changed
+    changed = np.flatnonzero(renewed | (faces.lives & z_changed))
+    faces.changed[renewed] = False
+    vertices.is_new[corners[renewed].ravel()] = True
+    touched = corners[changed].ravel()
+    vertices.is_stale[touched], vertices.has_moved[touched] = True, True
+    sums = (faces.squared, faces.squared_z, faces.largest_z)
+    for part in blocks(points.n_points[changed] + 1, POINTS_AT_ONCE):
+        _sum_faces(changed[part], corners, surface, points, *sums, moments)
 
 
 def _sum_faces(faces, corners, surface, points, squared, squared_z, largest_z, moments):

@@ -11,6 +11,17 @@ import numpy as np
 from ._csr import expanded, summed
 
 
+def minimum_norm_columns(indptr, columns, odd_integrals, integrals, locked, values):
+    row = np.repeat(np.arange(len(odd_integrals)), np.diff(indptr))
+    free = ~locked[columns]
+    row, of = row[free], integrals[columns[free]]
+    squared = summed(row, of**2, np.zeros(len(odd_integrals)))
+    factor = np.divide(
+        odd_integrals, squared, out=np.zeros(len(odd_integrals)), where=squared > 0.0
+    )
+    values[free] = of * factor[row]
+
+
 def add_ring_means(indptr, columns, weights, details, locked, even):
     _apply(indptr, columns, weights, details, locked, even, np.arange(len(details)), 1.0)
 

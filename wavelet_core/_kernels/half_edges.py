@@ -146,16 +146,14 @@ def walk_ring(v, origin, twin, outgoing, ring, spoke):
     return 0, 0
 
 
-# Do the rings of v and a share only the vertices that stand beside a in the ring of v?
-# ring, faces, both int32, hold it from a at `base` on: NO_INDEX where no face follows;
-# stamp (n,) int32 holds no value `mark` yet
+# The link condition: do the rings of v and of its neighbour a share only the vertices that stand
+# beside a in the ring of v? Else the collapse of v onto a would join two parts of the mesh.
+# ring (>= base + size,) int32 holds the ring of v from `base` on; n_sides: its number of faces.
+# The rings are short, so comparing all pairs costs less than marking vertices would.
+# kernels/collapse.py asks the same of a mesh that is not collapsed in place, and of a list of the
+# edges made since; test_link_conditions holds the two against each other.
 @inlined
-def meets_link_condition(ring, faces, base, size, origin, twin, outgoing, stamp, mark):
-    a = ring[base]
-    n_sides = 0
-    for k in range(base, base + size):
-        stamp[ring[k]] = mark
-        n_sides += faces[k] >= 0
+def meets_link_condition(a, ring, base, size, n_sides, origin, twin, outgoing):
     opening = outgoing[a]
     half_edge = opening
     n_shared = 0
@@ -163,14 +161,22 @@ def meets_link_condition(ring, faces, base, size, origin, twin, outgoing, stamp,
         corner = half_edge % 3
         following = half_edge - 2 if corner == 2 else half_edge + 1
         last = half_edge + 2 if corner == 0 else half_edge - 1
-        n_shared += stamp[origin[following]] == mark
+        n_shared += is_among(origin[following], ring, base, size)
         half_edge = twin[last]
         if half_edge < 0:
-            n_shared += stamp[origin[last]] == mark
+            n_shared += is_among(origin[last], ring, base, size)
             break
         if half_edge == opening:
             break
     return n_shared == (2 if n_sides == size else 1)
+
+
+@inlined
+def is_among(u, ring, base, size):
+    for k in range(base, base + size):  # noqa: SIM110 (numba compiles no generators)
+        if ring[k] == u:
+            return True
+    return False
 
 
 # Take a face out that has shrunk to the edge between a and `apex`; its other two sides meet.

@@ -70,15 +70,30 @@ def record_rings(start, stop, odd, target, mesh, indptr, ring, ring_faces):
             j = j + 1 if j + 1 < size else 0
 
 
-# Collapse all that the link condition allows, also against the edges made just before.
-# is_taken (n_odd,) bool, filled; stamp (n,) int32, zeros
+# Which collapses meet the link condition on the present mesh? is_linked (n_odd,) bool, filled
 @kernel
-def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, stamp, is_taken):
+def check_links(start, stop, odd, target, mesh, is_linked):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
+    for row in range(start, stop):
+        size, n_sides = walk_ring(odd[row], origin, twin, outgoing, ring, spoke)
+        is_linked[row] = meets_link_condition(
+            target[row], ring, 0, size, n_sides, origin, twin, outgoing
+        )
+
+
+# Collapse all that the link condition allows, also against the edges made just before.
+# is_taken (n_odd,) bool, filled
+@kernel
+def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, is_taken):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     for row in range(odd.shape[0]):
         base, size = indptr[row], indptr[row + 1] - indptr[row]
+        n_sides = 0
+        for k in range(base, base + size):
+            n_sides += ring_faces[k] >= 0
         is_taken[row] = meets_link_condition(
-            ring, ring_faces, base, size, origin, twin, outgoing, stamp, row + 1
+            ring[base], ring, base, size, n_sides, origin, twin, outgoing
         )
         if is_taken[row]:
             collapse(odd[row], ring, ring_faces, base, size, origin, twin, outgoing, face_lives)

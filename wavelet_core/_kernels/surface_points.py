@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ._jit import inlined, kernel
 from .half_edges import MAX_RING, before
+from .outline import cuts_off, nearest_on_edge
 
 
 class Surface(NamedTuple):
@@ -51,21 +52,29 @@ class FacePoints(NamedTuple):
 
 
 # Which face of the fan (a, b[t], b[t + 1]), t < n_wedges, holds the point at (x, y) from a?
-# bx, by (n_wedges + 1,) float64 from a, counter-clockwise; hint: where to look first
+# fan_xy (2, n_wedges + 1) float64: b from a, counter-clockwise; hint: where to look first
 @inlined
-def locate(n_wedges, bx, by, x, y, hint):
+def locate(n_wedges, fan_xy, x, y, hint):
     t = hint
-    while t > 0 and bx[t] * y - by[t] * x < 0.0:
+    while t > 0 and fan_xy[0, t] * y - fan_xy[1, t] * x < 0.0:
         t -= 1
     if t == hint:
-        while t < n_wedges - 1 and bx[t + 1] * y - by[t + 1] * x > 0.0:
+        while t < n_wedges - 1 and fan_xy[0, t + 1] * y - fan_xy[1, t + 1] * x > 0.0:
             t += 1
-    if bx[t] * y - by[t] * x >= 0.0 and bx[t + 1] * y - by[t + 1] * x <= 0.0:
+    if is_in_wedge(t, fan_xy, x, y):
         return t
     for s in range(n_wedges):  # a fan of more than half a turn misleads the search
-        if bx[s] * y - by[s] * x >= 0.0 and bx[s + 1] * y - by[s + 1] * x <= 0.0:
+        if is_in_wedge(s, fan_xy, x, y):
             return s
     return t
+
+
+@inlined
+def is_in_wedge(t, fan_xy, x, y):
+    return (
+        fan_xy[0, t] * y - fan_xy[1, t] * x >= 0.0
+        and fan_xy[0, t + 1] * y - fan_xy[1, t + 1] * x <= 0.0
+    )
 
 
 # rings in CSR: indptr (n_odd + 1,) int64; ring_faces int32; size (n_odd,) int64, filled with the
@@ -80,19 +89,54 @@ def count_points(start, stop, indptr, ring_faces, points, size):
                 size[row] += n_points[ring_faces[k]]
 
 
-# Move the points of each collapsed star, and its vertex, to the faces that now cover it.
+# Lay the ring of a collapsed vertex, from its target on, as a fan around that target.
+# fan_xy (2, MAX_RING) float64, filled. Returns whether the new outline edge cuts v off, the ends of
+# that edge as seen from the target, and the share of it at which v is judged.
+@inlined
+def lay_new_fan(v, base, size, ring, ring_faces, x, y, squared_tolerance, fan_xy):
+    a = ring[base]
+    for t in range(size - 1):
+        fan_xy[0, t] = x[ring[base + 1 + t]] - x[a]
+        fan_xy[1, t] = y[ring[base + 1 + t]] - y[a]
+    ends_at_target = ring_faces[base] < 0
+    if not (ends_at_target or ring_faces[base + size - 1] < 0):
+        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+    p = ring[base + 1] if ends_at_target else a
+    q = a if ends_at_target else ring[base + size - 1]
+    px, py, qx, qy = x[p] - x[v], y[p] - y[v], x[q] - x[v], y[q] - y[v]
+    if not cuts_off(px, py, qx, qy, squared_tolerance):
+        return False, 0.0, 0.0, 0.0, 0.0, 0.0
+    along = nearest_on_edge(0.0, 0.0, px, py, qx, qy)[2]
+    return True, x[p] - x[a], y[p] - y[a], x[q] - x[a], y[q] - y[a], along
+
+
+# The wedge of the fan that holds the removed vertex, seen from the target at (x, y), and the
+# weights of the wedge's two outer corners
+@inlined
+def weights_in_fan(n_wedges, fan_xy, x, y):
+    t = locate(n_wedges, fan_xy, x, y, 0)
+    bx, by, cx, cy = fan_xy[0, t], fan_xy[1, t], fan_xy[0, t + 1], fan_xy[1, t + 1]
+    doubled_area = bx * cy - by * cx
+    at_b = max((x * cy - y * cx) / doubled_area, 0.0)
+    at_c = max((bx * y - by * x) / doubled_area, 0.0)
+    total = max(at_b + at_c, 1.0)
+    return t, at_b / total, at_c / total
+
+
+# Move the points of each collapsed star, and its vertex, to the faces that now cover it; those that
+# a new outline edge leaves outside, to the nearest place of that edge.
 # odd (n_odd,) int32; ring, ring_faces int32 from the target on; first (n_odd + 1,) int64, where
 # the points go; corners (n_odd, 3) int32, weights (n_odd, 3), details (n_odd, c) float64, filled
 @kernel
 def hand_over(
     start, stop, odd, indptr, ring, ring_faces, surface, points, first, face_changed,
-    corners, weights, details,
+    squared_tolerance, corners, weights, details,
 ):  # fmt: skip
     vertex_x, vertex_y, vertex_z, measured = surface.x, surface.y, surface.z, surface.measured
     start_of, n_points = points.start, points.n_points
     point_x, point_y, point_z = points.x, points.y, points.z
     n_channels = vertex_z.shape[1]
-    bx, by = np.empty(MAX_RING), np.empty(MAX_RING)
+    fan_xy = np.empty((2, MAX_RING))
     cursor = np.empty(MAX_RING, np.int64)
     wedge = np.empty(256, np.int32)
     for row in range(start, stop):
@@ -103,22 +147,22 @@ def hand_over(
         ax, ay = vertex_x[a], vertex_y[a]
         if first[row + 1] - first[row] > wedge.shape[0]:
             wedge = np.empty(2 * (first[row + 1] - first[row]), np.int32)
-        for t in range(size - 1):
-            bx[t] = vertex_x[ring[base + 1 + t]] - ax
-            by[t] = vertex_y[ring[base + 1 + t]] - ay
-            cursor[t] = 0
+        cursor[: size - 1] = 0
+        is_cut, px, py, qx, qy, along = lay_new_fan(
+            v, base, size, ring, ring_faces, vertex_x, vertex_y, squared_tolerance, fan_xy
+        )
 
         x, y = vertex_x[v] - ax, vertex_y[v] - ay
-        t = locate(n_wedges, bx, by, x, y, 0)
+        if not is_cut:
+            t, at_b, at_c = weights_in_fan(n_wedges, fan_xy, x, y)
+        elif ring_faces[base] < 0:  # the new edge ends at the target
+            t, at_b, at_c = 0, 1.0 - along, 0.0
+        else:
+            t, at_b, at_c = n_wedges - 1, 0.0, along
+        at_a = max(1.0 - at_b - at_c, 0.0)
+        b, c = ring[base + 1 + t], ring[base + 2 + t]
         wedge[0] = t
         cursor[t] += 1
-        b, c = ring[base + 1 + t], ring[base + 2 + t]
-        doubled_area = bx[t] * by[t + 1] - by[t] * bx[t + 1]
-        at_b = max((x * by[t + 1] - y * bx[t + 1]) / doubled_area, 0.0)
-        at_c = max((bx[t] * y - by[t] * x) / doubled_area, 0.0)
-        total = max(at_b + at_c, 1.0)
-        at_b, at_c = at_b / total, at_c / total
-        at_a = max(1.0 - at_b - at_c, 0.0)
         corners[row, 0], corners[row, 1], corners[row, 2] = a, b, c
         weights[row, 0], weights[row, 1], weights[row, 2] = at_a, at_b, at_c
         for i in range(n_channels):
@@ -133,7 +177,10 @@ def hand_over(
                 continue
             hint = min(max(k - 1, 0), n_wedges - 1)
             for p in range(start_of[face], start_of[face] + n_points[face]):
-                t = locate(n_wedges, bx, by, point_x[p] - ax, point_y[p] - ay, hint)
+                x, y = point_x[p] - ax, point_y[p] - ay
+                if is_cut:
+                    x, y, _ = nearest_on_edge(x, y, px, py, qx, qy)
+                t = locate(n_wedges, fan_xy, x, y, hint)
                 wedge[n_found] = t
                 cursor[t] += 1
                 n_found += 1
@@ -146,6 +193,8 @@ def hand_over(
         p = cursor[wedge[0]]
         cursor[wedge[0]] += 1
         point_x[p], point_y[p] = vertex_x[v], vertex_y[v]
+        if is_cut:
+            point_x[p], point_y[p] = ax + px + along * (qx - px), ay + py + along * (qy - py)
         for i in range(n_channels):
             point_z[p, i] = measured[v, i]
         n_found = 1
@@ -159,6 +208,9 @@ def hand_over(
                 p = cursor[t]
                 cursor[t] += 1
                 point_x[p], point_y[p] = point_x[q], point_y[q]
+                if is_cut:
+                    x, y, _ = nearest_on_edge(point_x[q] - ax, point_y[q] - ay, px, py, qx, qy)
+                    point_x[p], point_y[p] = ax + x, ay + y
                 for i in range(n_channels):
                     point_z[p, i] = point_z[q, i]
 
@@ -190,15 +242,15 @@ def copy_points(start, stop, faces, first, points, x, y, z):
             p += 1
 
 
-# Errors of the faces that changed, or one of whose corners moved (z_changed (n,) bool).
-# squared (m,) float64: sum over points and channels; squared_z (m,) or (0,): of heights alone;
-# largest_z (m,): the largest squared height error; moments: of the corners, empty without update.
-# is_stale (n,) bool: set for the corners of those faces; is_new: where the faces themselves changed
+# Errors of the faces that changed, or one of whose corners moved: in faces (FaceState), and the
+# moments of their corners, which are empty without update. Of vertices (VertexState), is_stale is
+# set for the corners of those faces, and is_new where the faces themselves changed.
 @kernel
-def sum_over_faces(
-    start, stop, mesh, face_lives, face_changed, z_changed, surface, points,
-    squared, squared_z, largest_z, moments, is_stale, is_new, has_moved,
-):  # fmt: skip
+def sum_over_faces(start, stop, mesh, surface, points, vertices, faces, moments):
+    face_lives, face_changed = faces.lives, faces.changed
+    squared, squared_z, largest_z = faces.squared, faces.squared_z, faces.largest_z
+    z_changed, has_moved = vertices.z_changed, vertices.has_moved
+    is_stale, is_new = vertices.is_stale, vertices.is_new
     origin, x, y, z = mesh.origin, surface.x, surface.y, surface.z
     start_of, n_points = points.start, points.n_points
     point_x, point_y, point_z = points.x, points.y, points.z

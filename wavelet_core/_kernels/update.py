@@ -1,6 +1,32 @@
-"""Kernels of :mod:`wavelet_core.lifting.update`: the sequential one-ring-mean update."""
+"""Kernels of the updates: minimum norm, and the sequential one-ring mean."""
 
 from ._jit import kernel, njit
+
+
+# The number that the integrals over the unlocked support of one odd vertex, entries first to last
+# of its row, are multiplied by to make its column of U (Eq. 50); 0 where none is unlocked.
+# columns (nnz,) int32, integrals (n_even,) of the coarser level, locked (n_even,) bool
+@njit
+def minimum_norm_factor(first, last, columns, odd_integral, integrals, locked):
+    squared = 0.0
+    for k in range(first, last):
+        if not locked[columns[k]]:
+            squared += integrals[columns[k]] ** 2
+    if squared > 0.0:
+        return odd_integral / squared
+    return 0.0
+
+
+# indptr (n_odd + 1,) int64, columns (nnz,) int32, odd_integrals (n_odd,), integrals (n_even,),
+# locked (n_even,) bool; values (nnz,) float64, filled where the column is unlocked
+@kernel
+def minimum_norm_columns(indptr, columns, odd_integrals, integrals, locked, values):
+    for row in range(len(indptr) - 1):
+        first, last = indptr[row], indptr[row + 1]
+        factor = minimum_norm_factor(first, last, columns, odd_integrals[row], integrals, locked)
+        for k in range(first, last):
+            if not locked[columns[k]]:
+                values[k] = integrals[columns[k]] * factor
 
 
 # The constant that Eq. 46 adds to the unlocked ring of one odd vertex, for one channel:

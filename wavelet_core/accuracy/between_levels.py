@@ -58,8 +58,11 @@ def mesh_of_size(pyramid: Pyramid, n_vertices: int) -> PartialMesh:
     """
     if n_vertices < pyramid.n_vertices(0):
         raise OptionError(
-            f"the coarsest level has {pyramid.n_vertices(0)} vertices, more than {n_vertices}; "
-            "analyse the input anew with a smaller target."
+            "the coarsest level has {coarsest} vertices, more than {0} {given}; analyse the input "
+            "anew with a smaller target.",
+            "n_vertices",
+            coarsest=pyramid.n_vertices(0),
+            given=n_vertices,
         )
     level = next(
         (k for k in range(pyramid.n_levels) if pyramid.n_vertices(k) >= n_vertices),
@@ -93,10 +96,12 @@ def mesh_of_accuracy(pyramid: Pyramid, max_error: float) -> PartialMesh:
         A tolerance below 0.
     """
     if not max_error >= 0:
-        raise OptionError(f"max_error is {max_error}; give a distance of 0 or more.")
+        raise OptionError(
+            "{0} is {given}; give a distance of 0 or more.", "max_error", given=max_error
+        )
     points = pyramid.mesh(pyramid.n_levels).vertices
     finest = (pyramid.n_levels, pyramid.mesh(pyramid.n_levels))
-    fitting = (pair for pair in pyramid.meshes() if _largest(pair[1], points) <= max_error)
+    fitting = (pair for pair in enumerate(pyramid) if _largest(pair[1], points) <= max_error)
     level, mesh = next(fitting, finest)
     best = PartialMesh(mesh, pyramid.vertex_ids(level), level)
     if level == 0:

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from .._validate import FloatArray
 from ..errors import OptionError
-from ..mesh.location import cover_of
+from ..mesh.location import Cover, cover_of
 from ..mesh.triangle_mesh import TriangleMesh
 
 #: The fit ends when the gradient has fallen to this part of what it was.
@@ -18,7 +18,10 @@ MAX_STEPS = 500
 
 
 def fitted(
-    mesh: TriangleMesh, original: TriangleMesh, locked: ArrayLike | None = None
+    mesh: TriangleMesh,
+    original: TriangleMesh,
+    locked: ArrayLike | None = None,
+    cover: Cover | None = None,
 ) -> TriangleMesh:
     """Return a coarse mesh whose heights fit the original's vertices best.
 
@@ -34,6 +37,8 @@ def fitted(
         What it shall fit, with the same attributes; only its vertices count.
     locked : array_like of bool, shape (n_vertices,), optional
         Vertices of ``mesh`` that keep their values.
+    cover : Cover, optional
+        What `cover_of` gives for the original's vertices on the mesh, where it is known already.
 
     Returns
     -------
@@ -53,16 +58,24 @@ def fitted(
     """
     if mesh.attribute_names != original.attribute_names:
         raise OptionError(
-            f"the mesh has the attributes {mesh.attribute_names}, the original "
-            f"{original.attribute_names}; fit a level of its own pyramid."
+            "{0} has the attributes {of_mesh}, {1} {of_original}; fit a level of its own pyramid.",
+            "mesh",
+            "original",
+            of_mesh=mesh.attribute_names,
+            of_original=original.attribute_names,
         )
     free = np.ones(mesh.n_vertices, dtype=bool)
     if locked is not None:
         mask = np.asarray(locked)
         if mask.shape != free.shape or mask.dtype != bool:
-            raise OptionError(f"locked has shape {mask.shape}; give {free.shape} of bool.")
+            raise OptionError(
+                "{0} has shape {shape}; give {due} of bool.",
+                "locked",
+                shape=mask.shape,
+                due=free.shape,
+            )
         free = ~mask
-    cover = cover_of(mesh, original.vertices[:, :2])
+    cover = cover_of(mesh, original.vertices[:, :2]) if cover is None else cover
     indices = mesh.faces[cover.face].ravel()
     weights = np.column_stack([1.0 - cover.at_b - cover.at_c, cover.at_b, cover.at_c]).ravel()
     indptr = np.arange(0, len(indices) + 1, 3)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from .._validate import FloatArray
-from ..errors import Cancelled
 from ..lifting.pyramid import Pyramid
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
+from ..progress import Progress, report
 
 
 class LevelErrors(NamedTuple):
@@ -39,9 +38,9 @@ class LevelErrors(NamedTuple):
 
 
 def level_errors(
-    pyramid: Pyramid, progress: Callable[[float], bool | None] | None = None
+    pyramid: Pyramid, progress: Progress | None = None, finest: TriangleMesh | None = None
 ) -> list[LevelErrors]:
-    """Return size and errors of every level, the finest first.
+    """Return size and errors of every level, the coarsest first: ``rows[level]``.
 
     Parameters
     ----------
@@ -49,18 +48,20 @@ def level_errors(
         What is measured.
     progress : callable, optional
         Called with a fraction in [0, 1] after each level; the work stops when it returns False.
+    finest : TriangleMesh, optional
+        The pyramid's finest mesh, where it has been synthesised already.
 
     Raises
     ------
     Cancelled
         ``progress`` returned False.
     """
-    finest = pyramid.mesh(pyramid.n_levels)
+    finest = pyramid.synthesise() if finest is None else finest
     reference = _columns(finest)
     extent = reference.max(axis=0) - reference.min(axis=0)
     scale = np.where(extent > 0, extent, 1.0)
     rows = []
-    for level, mesh in pyramid.meshes():
+    for level, mesh in enumerate(pyramid):
         ids = pyramid.vertex_ids(level)
         difference = (_columns(mesh) - reference[ids]) / scale
         errors = surface_errors(mesh, finest.vertices)
@@ -76,9 +77,12 @@ def level_errors(
                 len(errors) - len(covered),
             )
         )
-        if progress is not None and progress(len(rows) / (pyramid.n_levels + 1)) is False:
-            raise Cancelled("measuring the errors was cancelled; nothing was kept.")
-    return rows[::-1]
+        report(
+            progress,
+            len(rows) / len(pyramid),
+            "measuring the errors was cancelled; nothing was kept.",
+        )
+    return rows
 
 
 def _columns(mesh: TriangleMesh) -> FloatArray:

@@ -112,7 +112,12 @@ class SurfaceShape:
             Another name.
         """
         if name not in SHAPE_NAMES:
-            raise OptionError(f"there is no shape {name!r}; choose of {', '.join(SHAPE_NAMES)}.")
+            raise OptionError(
+                "there is no shape {given}; choose of {shapes}.",
+                "name",
+                given=repr(name),
+                shapes=", ".join(SHAPE_NAMES),
+            )
         values: FloatArray = getattr(self, name)
         return values
 
@@ -245,7 +250,7 @@ def detail_shape(pyramid: Pyramid, level: int) -> DetailShape:
         first,
         second,
     )
-    z = step.details[:, 0 if pyramid.signal == "z" else 2]
+    z = step.details[:, pyramid.channels.index("z")]
     squared = (first**2).sum(axis=1)
     carries = squared > SMALL_MOMENT**2 * np.abs(second)
     gradient = np.full((step.n_odd, 2), np.nan)

@@ -7,7 +7,7 @@ the square root of two.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 from .._validate import FloatArray, frozen
 from ..errors import OptionError
 from ..lifting.pyramid import Pyramid
+from ..progress import Progress, part_of
 from .shape import surface_shape
 from .spectrum import band_components, band_energies, heights_above_lows, vertex_details
 
 __all__ = ["Signature", "energy_signature", "joined_levels", "plain_features", "scale_features"]
-
-Progress = Callable[[float], bool | None]
 
 #: How much fewer vertices the coarser end of a joined band has.
 BAND_RATIO = 2.0
@@ -84,7 +83,7 @@ def energy_signature(
     channels : sequence of str
         Some of the pyramid's; the geometry alone when empty.
     progress : callable, optional
-        See :func:`wavelet_core.features.spectrum.band_energies`.
+        See :func:`wavelet_core.band_energies`.
 
     Returns
     -------
@@ -135,7 +134,7 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     bands = joined_levels(pyramid)
     labels = [f"{first}-{stop - 1}" for first, stop in bands]
     n_parts = 1 + len(pyramid.attribute_names)
-    components = band_components(pyramid, "z", _part(progress, 0, n_parts))
+    components = band_components(pyramid, "z", part_of(progress, 0, 1 / n_parts))
     blocks: list[NDArray] = [
         np.column_stack([components.residual(first) for first, _ in bands]),
         heights_above_lows(pyramid, [first for first, _ in bands]),
@@ -145,11 +144,13 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     names += [f"height above lows of {first}" for first, _ in bands]
     names += [f"rms geometry {label}" for label in labels]
     details = vertex_details(pyramid)
-    column = 0 if pyramid.signal == "z" else 2
+    column = pyramid.channels.index("z")
     blocks += [np.nan_to_num(details.vectors[:, [column]]), details.level[:, None]]
     names += ["own detail", "level"]
     for k, attribute in enumerate(pyramid.attribute_names, start=1):
-        components = band_components(pyramid, attribute, _part(progress, k, n_parts))
+        components = band_components(
+            pyramid, attribute, part_of(progress, k / n_parts, (k + 1) / n_parts)
+        )
         smooth = [components.base + components.bands[:, :first].sum(axis=1) for first, _ in bands]
         blocks += [np.column_stack(smooth), _log_energies(pyramid, attribute, bands, None)]
         names += [f"{attribute} at {first}" for first, _ in bands]
@@ -196,11 +197,5 @@ def _log_energies(
 def _require_levels(pyramid: Pyramid) -> None:
     if pyramid.n_levels == 0:
         raise OptionError(
-            "the pyramid has no levels, so its vertices have no scales; analyse more."
+            "{0} has no levels, so its vertices have no scales; analyse more.", "pyramid"
         )
-
-
-def _part(progress: Progress | None, part: int, n_parts: int) -> Progress | None:
-    if progress is None:
-        return None
-    return lambda fraction: progress((part + fraction) / n_parts)

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from .._validate import FloatArray, frozen
-from ..errors import Cancelled, OptionError
+from ..errors import OptionError
 from ..lifting.pyramid import Pyramid
 from ..lifting.step import Step, synthesise_level
 from ..mesh.collapse import even_positions
+from ..progress import Progress, report
 
 __all__ = [
     "STAYS",
@@ -30,8 +31,6 @@ __all__ = [
     "heights_above_lows",
     "vertex_details",
 ]
-
-Progress = Callable[[float], bool | None]
 
 #: Level of the vertices that no step removed: those of the coarsest mesh.
 STAYS = -1
@@ -296,18 +295,18 @@ def heights_above_lows(
 
 
 def _finest_column(pyramid: Pyramid, column: int) -> FloatArray:
-    mesh = pyramid.synthesise()
-    coordinates = mesh.vertices[:, 2:] if pyramid.signal == "z" else mesh.vertices
-    values: FloatArray = np.hstack([coordinates, mesh.attributes])[:, column]
-    return values
+    return pyramid.columns_of(pyramid.synthesise())[:, column]
 
 
 def _columns_of(pyramid: Pyramid, channel: str | None) -> list[int]:
     if channel is None:
-        return [0] if pyramid.signal == "z" else [0, 1, 2]
+        return list(range(len(pyramid.coordinates)))
     if channel not in pyramid.channels:
         raise OptionError(
-            f"there is no channel {channel!r}; the pyramid has {', '.join(pyramid.channels)}."
+            "there is no {0} {given}; the pyramid has {channels}.",
+            "channel",
+            given=repr(channel),
+            channels=", ".join(pyramid.channels),
         )
     return [pyramid.channels.index(channel)]
 
@@ -361,5 +360,4 @@ def _spread(
 
 
 def _report(progress: Progress | None, fraction: float) -> None:
-    if progress is not None and progress(min(fraction, 1.0)) is False:
-        raise Cancelled("the spectrum was cancelled; nothing was kept.")
+    report(progress, min(fraction, 1.0), "the spectrum was cancelled; nothing was kept.")

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .._validate import FloatArray
-from ..errors import Cancelled, OptionError
+from ..errors import OptionError
 from ..lifting.analyse import EXPECTED_KEPT, analyse
 from ..lifting.linear_map import Transform
 from ..mesh.triangle_mesh import TriangleMesh
+from ..progress import Progress, report
 from . import _weighted_sum
 from ._weighted_sum import WeightedSum
 from .gains import channel_index
@@ -25,8 +26,6 @@ SCALES_PER_LEVEL = 0.5
 LEAST_VERTICES = 100
 #: Time that the details of all vertices take, in pyramids: for the progress.
 TIME_OF_VERTICES = 2
-
-Progress = Callable[[float], bool | None]
 
 
 def denoise(
@@ -114,9 +113,9 @@ def denoise(
     """
     check_sigma(sigma)
     if n_pyramids < 1:
-        raise OptionError(f"n_pyramids is {n_pyramids}; give 1 or more.")
+        raise OptionError("{0} is {given}; give 1 or more.", "n_pyramids", given=n_pyramids)
     if levels < 1:
-        raise OptionError(f"levels is {levels}; give 1 or more.")
+        raise OptionError("{0} is {given}; give 1 or more.", "levels", given=levels)
     names = ("z", *mesh.attribute_names)
     chosen = [channel_index(names, name) for name in channels]
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
@@ -225,5 +224,4 @@ def _transform(
 
 
 def _report(progress: Progress | None, fraction: float) -> None:
-    if progress is not None and progress(fraction) is False:
-        raise Cancelled("denoising was cancelled; nothing was kept.")
+    report(progress, fraction, "denoising was cancelled; nothing was kept.")

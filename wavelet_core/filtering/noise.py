@@ -133,9 +133,7 @@ def channel_noise(pyramid: Pyramid, channel: str = "z") -> float:
     """Return the standard deviation of white noise in a channel; see :func:`estimate_noise`."""
     column = channel_index(pyramid.channels, channel)
     mesh = pyramid.synthesise()
-    first = 2 if pyramid.signal == "z" else 0
-    values = np.column_stack([mesh.vertices, mesh.attributes])[:, first + column]
-    return estimate_noise(mesh, values)
+    return estimate_noise(mesh, pyramid.columns_of(mesh)[:, column])
 
 
 def deviation_of(details: FloatArray) -> float:
@@ -146,4 +144,6 @@ def deviation_of(details: FloatArray) -> float:
 def check_sigma(sigma: float | None) -> None:
     """Raise :class:`OptionError` unless sigma is left out or a number of 0 or more."""
     if sigma is not None and not (np.isfinite(sigma) and sigma >= 0):
-        raise OptionError(f"sigma is {sigma}; give the noise's standard deviation, 0 or more.")
+        raise OptionError(
+            "{0} is {given}; give the noise's standard deviation, 0 or more.", "sigma", given=sigma
+        )

@@ -71,11 +71,16 @@ def denoised(
     compression. IEEE Transactions on Image Processing 9, 2000.
     """
     if method not in METHODS:
-        raise OptionError(f"method is {method!r}; give one of {', '.join(METHODS)}.")
+        raise OptionError(
+            "{0} is {given}; give one of {methods}.",
+            "method",
+            given=repr(method),
+            methods=", ".join(METHODS),
+        )
     if not (np.isfinite(strength) and strength >= 0):
-        raise OptionError(f"strength is {strength}; give a number of 0 or more.")
+        raise OptionError("{0} is {given}; give a number of 0 or more.", "strength", given=strength)
     if by_level and sigma is not None:
-        raise OptionError("sigma and by_level exclude each other; give one.")
+        raise OptionError("{0} and {1} exclude each other; give one.", "sigma", "by_level")
     check_sigma(sigma)
     columns = {name: channel_index(pyramid.channels, name) for name in channels}
     if not pyramid.steps:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .._validate import FloatArray
 from ..errors import PyramidError
+from .signal import SIGNALS
 from .step import Step
 from .update import UPDATES
 
@@ -24,9 +25,9 @@ def check_parts(
     locked: NDArray | None,
 ) -> None:
     """Raise :class:`PyramidError` unless the parts are those of some pyramid."""
-    _require(signal in ("z", "xyz"), f"signal {signal!r} is neither 'z' nor 'xyz'")
-    _require(update in UPDATES.values(), f"update {update!r} is not known")
-    leading = ("z",) if signal == "z" else ("x", "y", "z")
+    _require(signal in SIGNALS, f"signal {signal!r} is not known")
+    _require(update in UPDATES, f"update {update!r} is not known")
+    leading = SIGNALS[signal].coordinates
     names = tuple(channels)
     _require(names[: len(leading)] == leading, f"channels {names} do not begin with {leading}")
     _require(len(set(names)) == len(names), f"channels {names} repeat a name")
@@ -42,7 +43,7 @@ def check_parts(
     _require(_in_range(faces, n_vertices), "faces with a vertex out of range")
     a, b, c = faces.T
     _require(not ((a == b) | (b == c) | (c == a)).any(), "a face with a vertex twice")
-    if signal == "z":
+    if SIGNALS[signal].keeps_plan:
         _require(
             horizontal is not None
             and horizontal.shape == (n_vertices, 2)
@@ -55,30 +56,30 @@ def check_parts(
 
 
 def _check_step(level: int, step: Step, n_even: int, n_channels: int) -> int:
-    where = f"step {level}"
+    def require(holds: bool, fault: str) -> None:
+        _require(holds, f"step {level}: {fault}", level)
+
     n_odd = len(step.odd)
     n_fine = n_even + n_odd
-    _require(
-        step.odd.shape == step.target.shape == (n_odd,) and n_odd > 0, f"{where}: no odd vertices"
-    )
-    _require(_in_range(step.odd, n_fine), f"{where}: an odd vertex out of range")
-    _require(_in_range(step.target, n_fine), f"{where}: a target out of range")
+    require(step.odd.shape == step.target.shape == (n_odd,) and n_odd > 0, "no odd vertices")
+    require(_in_range(step.odd, n_fine), "an odd vertex out of range")
+    require(_in_range(step.target, n_fine), "a target out of range")
     is_odd = np.zeros(n_fine, dtype=bool)
     is_odd[step.odd] = True
-    _require(int(is_odd.sum()) == n_odd, f"{where}: an odd vertex twice")
-    _require(not is_odd[step.target].any(), f"{where}: a target that is odd itself")
-    _require(
+    require(int(is_odd.sum()) == n_odd, "an odd vertex twice")
+    require(not is_odd[step.target].any(), "a target that is odd itself")
+    require(
         step.indptr.shape == (n_odd + 1,)
         and step.indptr[0] == 0
         and bool((np.diff(step.indptr) > 0).all())
         and step.indptr[-1] == len(step.indices) == len(step.weights),
-        f"{where}: a prediction filter whose rows do not fit",
+        "a prediction filter whose rows do not fit",
     )
-    _require(_in_range(step.indices, n_even), f"{where}: a prediction from a vertex out of range")
-    _require(bool(np.isfinite(step.weights).all()), f"{where}: a prediction weight not finite")
-    _require(
+    require(_in_range(step.indices, n_even), "a prediction from a vertex out of range")
+    require(bool(np.isfinite(step.weights).all()), "a prediction weight not finite")
+    require(
         step.details.shape == (n_odd, n_channels) and bool(np.isfinite(step.details).all()),
-        f"{where}: detail vectors that do not fit or are not finite",
+        "detail vectors that do not fit or are not finite",
     )
     return n_fine
 
@@ -87,6 +88,6 @@ def _in_range(ids: NDArray, n: int) -> bool:
     return ids.size == 0 or bool(ids.min() >= 0 and ids.max() < n)
 
 
-def _require(holds: bool, fault: str) -> None:
+def _require(holds: bool, fault: str, level: int | None = None) -> None:
     if not holds:
-        raise PyramidError(f"not a valid pyramid: {fault}; analyse the input anew.")
+        raise PyramidError(f"not a valid pyramid: {fault}; analyse the input anew.", level)

@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._kernels._jit import announce_engine
 from .._validate import FloatArray, frozen
-from ..errors import Cancelled, MeshError, OptionError
+from ..errors import MeshError, OptionError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
-from ..partition._mutable_level import SurfaceLevel
-from ..partition.error_guided import SurfaceRules, analyse_surface
-from ..partition.orderings import (
-    ColouringPartition,
-    LevelView,
-    Partition,
-    QuadricPartition,
-    RandomPartition,
-    SurfacePartition,
-)
+from ..partition.error_guided import DEFAULT_LEVELS, SurfaceRules, analyse_surface
+from ..partition.orderings import LevelView, Partition
+from ..partition.registry import PARTITIONS, PartitionInput
+from ..partition.stopping import stop_record
+from ..progress import Progress, report
 from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
 from .pyramid import Pyramid
+from .signal import SIGNALS
 from .step import Step, analyse_level
-
-Progress = Callable[[float], bool | None]
 
 #: Share of the vertices that one level is expected to keep, for the progress bar alone.
 EXPECTED_KEPT = 0.73
@@ -39,6 +34,7 @@ LEAST_WEIGHT = 1e-9
 
 def analyse(
     mesh: TriangleMesh,
+    *,
     levels: int | None = None,
     partition: str | None = None,
     prediction: str | None = None,
@@ -49,12 +45,12 @@ def analyse(
     max_error: float | None = None,
     max_rms: float | None = None,
     progress: Progress | None = None,
-    *,
     attribute_weights: Sequence[float] | None = None,
-    bending_weight: float = 1.0,
-    seed: int = 0,
+    bending_weight: float | None = None,
+    seed: int | None = None,
     norm: str | None = None,
     removal_fraction: float | None = None,
+    outline_tolerance: float = 0.0,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
 
@@ -63,7 +59,9 @@ def analyse(
     mesh : TriangleMesh
         A manifold surface, with or without outline and holes.
     levels : int, optional
-        The most levels to build. By default 12, or, with another stop rule, as many as it takes.
+        The most levels to build. By default as many as another stop rule takes; without one, 12
+        with a partition of the paper, and with ``partition="surface"`` 24 after those that thin
+        flat parts alone, which cost nothing.
     partition : {"surface", "quadric", "colouring", "random"}, optional
         Which vertices go: those that raise the vertical errors at all input vertices least; by
         the paper's cost; or regardless of any, in the order of their index or a random one. By
@@ -73,7 +71,7 @@ def analyse(
         How an odd vertex is estimated from its neighbours: ``"uniform"``, ``"cotangent"``,
         ``"geometric"``, ``"nnls"``, ``"least_squares"``, ``"barycentric"`` or ``"plane"``; by
         default ``"barycentric"`` with ``partition="surface"``, else ``"geometric"``. The paper's
-        short names (``"GL"``) and joined designs (``"GLMN"``) are accepted.
+        short names (``"GL"``) and joined designs (``"GLMN"``) are accepted, in capitals or not.
     update : {"minimum_norm", "martinez_ortega", "one_ring_mean", "none"}, optional
         How the details are handed on to the even vertices. By default ``"minimum_norm"``; with
         ``partition="surface"`` and ``norm="max"`` it is ``"none"``.
@@ -92,17 +90,22 @@ def analyse(
         Called with a fraction in [0, 1]; the work stops when it returns False.
     attribute_weights : sequence of float, optional
         Weight of each attribute, against the coordinates, in cost and prediction; 1 by default.
-    bending_weight : float
-        Weight of the bending energy in the cost of ``partition="quadric"``.
-    seed : int
-        Of the order of ``partition="random"``.
+    bending_weight : float, optional
+        Weight of the bending energy in the cost of ``partition="quadric"``; by default 1.
+    seed : int, optional
+        Of the order of ``partition="random"``; by default 0.
     norm : {"rms", "max"}, optional
         What ``partition="surface"`` keeps small: the mean square of the vertical errors, or the
         largest. By default ``"max"`` if ``max_error`` is given, else ``"rms"``.
     removal_fraction : float, optional
-        Largest share of the vertices that a level of ``partition="surface"`` may take; by default
-        0.25, and 0.1 for ``norm="max"`` with ``target_vertices``. Twice that share while more than
-        twice ``target_vertices`` are left.
+        Largest share of the vertices that a level of ``partition="surface"`` may take, besides
+        those that cost nothing; by default 0.25, and 0.1 for ``norm="max"`` with
+        ``target_vertices``. Twice that share while more than twice ``target_vertices`` are left.
+    outline_tolerance : float
+        How far from the outline of each level, holes included, the vertices of the input's outline
+        may lie, in the unit of x and y, with ``partition="surface"`` and its own filters. With 0 an
+        outline vertex goes only where the outline runs straight. Input vertices that a level does
+        not cover any more count with their error at the nearest place of its outline.
 
     Returns
     -------
@@ -115,9 +118,16 @@ def analyse(
         The mesh is no manifold, or, with ``signal="z"``, has a face that is not
         counter-clockwise in plan.
     OptionError
-        An option that is not served.
+        A value out of bounds, a name that is not listed above, or options that contradict each
+        other: an option of another partition, an update beside a joined design, ``"plane"`` with
+        ``"martinez_ortega"``.
     Cancelled
         ``progress`` returned False.
+
+    Warns
+    -----
+    UnstableDesignWarning
+        ``"least_squares"`` with ``"martinez_ortega"``, the paper's unstable baseline.
 
     Notes
     -----
@@ -146,6 +156,7 @@ def analyse(
         seed=seed,
         norm=norm,
         removal_fraction=removal_fraction,
+        outline_tolerance=outline_tolerance,
     )
     announce_engine(mesh.n_vertices)
     return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
@@ -164,8 +175,9 @@ class _Analysis:
         self._mesh = mesh
         self._options = options
         self._progress = progress
-        self._in_plan = options.signal == "z"
-        if self._in_plan:
+        self._in_plan = SIGNALS[options.signal].keeps_plan
+        self._partition_row = PARTITIONS[options.partition]
+        if self._in_plan or self._partition_row.needs_upright:
             _require_upright(mesh)
         self._all_locked = locked
         self._faces = mesh.faces.astype(np.int32)
@@ -179,43 +191,51 @@ class _Analysis:
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
         self._report(0.0)
-        if self._options.partition == "surface":
+        if self._partition_row.needs_upright:
             build_connectivity(self._faces, self._mesh.n_vertices)  # refuses what is no manifold
             self._report(0.0)
         steps = self._surface_steps() if self._is_surface_lifting() else self._steps()
         self._report(1.0)
-        return Pyramid(
+        pyramid = Pyramid(
             faces=frozen(self._mesh.faces.astype(np.int32)),
             horizontal=None if not self._in_plan else frozen(self._mesh.vertices[:, :2]),
             coarse=frozen(self._coefficients),
             steps=tuple(reversed(steps)),
-            channels=(("z",) if self._in_plan else ("x", "y", "z")) + self._mesh.attribute_names,
+            channels=SIGNALS[self._options.signal].coordinates + self._mesh.attribute_names,
             signal=self._options.signal,  # type: ignore[arg-type]
             update=self._options.update,
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
         )
+        record = stop_record(
+            self._stopped_by,
+            pyramid._faces_of(0),
+            self._all_locked[pyramid.vertex_ids(0)],
+            self._options.target_vertices,
+        )
+        return replace(pyramid, stop=record)
 
     def _steps(self) -> list[Step]:
         """Partition, predict and update, each by its own rule."""
         self._partition = self._make_partition()
         steps: list[Step] = []
-        while len(steps) < self._options.levels:
+        most = self._most_levels()
+        self._stopped_by = "levels"
+        while len(steps) < most:
             step = self._step()
             if step is None:
                 break
             steps.append(step)
         return steps
 
+    def _most_levels(self) -> int:
+        """Return the number of levels, as far as it is known beforehand."""
+        levels = self._options.levels
+        return DEFAULT_LEVELS if levels is None else levels
+
     def _is_surface_lifting(self) -> bool:
         """Whether partition, prediction and update are those that know of each other."""
-        options = self._options
-        return (
-            options.partition == "surface"
-            and options.prediction == "barycentric"
-            and options.update in ("minimum_norm", "none")
-            and self._in_plan
-        )
+        return self._options.is_error_guided
 
     def _surface_steps(self) -> list[Step]:
         """Keep the surface: partition, prediction and update in one, see `surface`."""
@@ -228,6 +248,7 @@ class _Analysis:
             target_vertices=options.target_vertices or 0,
             max_error=np.inf if options.max_error is None else options.max_error,
             max_rms=np.inf if options.max_rms is None else options.max_rms,
+            outline_tolerance=options.outline_tolerance,
         )
         result = analyse_surface(
             self._mesh.vertices[:, :2],
@@ -239,28 +260,27 @@ class _Analysis:
             self._report_size,
         )
         self._coefficients = result.coarse
-        return result.steps
+        self._stopped_by = result.stopped_by
+        return [Step(*step) for step in result.steps]
 
     def _make_partition(self) -> Partition:
-        options = self._options
-        if options.partition == "quadric":
-            return QuadricPartition(options.bending_weight)
-        if options.partition == "random":
-            return RandomPartition(options.seed)
-        if options.partition == "colouring":
-            return ColouringPartition()
-        _require_upright(self._mesh)
         columns = np.hstack([self._mesh.vertices[:, 2:], self._mesh.attributes])
-        heights = columns * self._scale.height_weights()
-        plan = self._mesh.vertices[:, :2]
-        level = SurfaceLevel(plan, heights, self._faces, self._locked, with_update=False)
-        return SurfacePartition(level, options.norm, options.removal_fraction)
+        return self._partition_row.make(
+            PartitionInput(
+                plan=self._mesh.vertices[:, :2],
+                heights=columns * self._scale.height_weights(),
+                faces=self._faces,
+                locked=self._locked,
+                options=self._options.of_partition(),
+            )
+        )
 
     def _step(self) -> Step | None:
         """Analyse one level; None, and the level unchanged, where a rule forbids it."""
         n_vertices = len(self._coefficients)
         max_odd = n_vertices - (self._options.target_vertices or 0)
         if max_odd <= 0:
+            self._stopped_by = "target"
             return None
         connectivity = build_connectivity(self._faces, n_vertices)
         self._report()
@@ -268,6 +288,7 @@ class _Analysis:
         view = LevelView(self._faces, points, plan, connectivity, self._locked, self._in_plan)
         split = self._partition.split(view, max_odd)
         if len(split.odd) == 0:
+            self._stopped_by = "nothing_left"
             return None
         self._report()
         even = even_positions(split.odd, n_vertices)
@@ -284,6 +305,7 @@ class _Analysis:
         )
         faces = merged_faces(self._faces, merge_map(*split, n_vertices))
         if self._breaks_a_tolerance(coarse, even, faces):
+            self._stopped_by = "tolerance"
             return None
         self._partition.descend(split, even, filter_matrix)
         self._faces, self._coefficients, self._integrals = faces, coarse, integrals
@@ -328,12 +350,11 @@ class _Analysis:
         n_input = self._mesh.n_vertices
         if fraction is None:
             expected = self._options.target_vertices or n_input * EXPECTED_KEPT ** min(
-                self._options.levels, 40
+                self._most_levels(), 40
             )
             gone = n_input - (len(self._coefficients) if n_vertices is None else n_vertices)
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
-        if self._progress(fraction) is False:
-            raise Cancelled("the analysis was cancelled; nothing was kept.")
+        report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
 
 
 class _Normalisation:
@@ -372,8 +393,11 @@ def _locked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.boo
     mask = np.array(locked)
     if mask.shape != (mesh.n_vertices,) or mask.dtype != bool:
         raise OptionError(
-            f"locked has shape {mask.shape} and dtype {mask.dtype}; give one bool for each of "
-            f"{mesh.n_vertices} vertices."
+            "{0} has shape {shape} and dtype {dtype}; give one bool for each of {n} vertices.",
+            "locked",
+            shape=mask.shape,
+            dtype=mask.dtype,
+            n=mesh.n_vertices,
         )
     return mask
 
@@ -383,7 +407,11 @@ def _require_upright(mesh: TriangleMesh) -> None:
     if len(areas) and areas.min() <= 0:
         face = int(np.argmax(areas <= 0))
         raise MeshError(
-            f"face {face} {mesh.faces[face].tolist()} is flipped or flat in plan (area "
-            f"{areas[face]:g}), so the mesh is no TIN; turn or remove it, or use signal='xyz'.",
+            "face {face} {vertices} is flipped or flat in plan (area {area:g}), so the mesh is no "
+            "TIN; turn or remove it, or use {0} 'xyz'.",
             face,
+            "signal",
+            face=face,
+            vertices=mesh.faces[face].tolist(),
+            area=areas[face],
         )

@@ -13,7 +13,7 @@ from .._validate import FloatArray
 from ..mesh.collapse import even_positions
 from .pyramid import Pyramid
 from .step import split_integrals
-from .update import apply_ring_means, update_filter
+from .update import UPDATES, apply_ring_means, update_filter
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class Transform:
             locked = locked[even]
             update = update_filter(pyramid.update, prediction, odd_integrals, integrals, locked)
             steps.append(LinearStep(step.odd, even, prediction, update, locked))
-        return cls(tuple(reversed(steps)), pyramid.update == "one_ring_mean")
+        return cls(tuple(reversed(steps)), UPDATES.find(pyramid.update).is_sequential)
 
     def analyse(self, columns: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
         """Return the coarse coefficients and the details of columns ``(n_vertices, k)``.

@@ -1,26 +1,30 @@
-"""Names and bounds of the options of an analysis."""
+"""The options of an analysis: names, bounds, defaults, and what contradicts what."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+import operator
+import warnings
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
-import numpy as np
+from ..errors import OptionError, UnstableDesignWarning
+from ..partition.registry import NORMS, PARTITIONS, Norm, PartitionRow
+from .prediction import PREDICTIONS, Prediction
+from .signal import SIGNALS, Signal
+from .update import UPDATES, Update
 
-from ..errors import OptionError
-from .prediction import PREDICTIONS
-from .update import UPDATES
+__all__ = [
+    "DEFAULT_LEVELS",
+    "AnalysisOptions",
+    "parse_design",
+    "refused_pair",
+    "resolve_options",
+]
 
-PARTITIONS = ("surface", "quadric", "colouring", "random")
-#: By what a surface-guided partition judges a removal.
-NORMS = ("rms", "max")
-#: Share of the vertices that a surface-guided level may take, at most.
-REMOVAL_FRACTION = 0.25
-#: The same for the largest error at a given size, which smaller steps keep lower: 5 % on five DEMs.
-MAX_NORM_REMOVAL_FRACTION = 0.1
-SIGNALS = ("z", "xyz")
-#: Levels when neither a number nor a stop rule is given: the paper's experiments use 12.
+#: Levels with the paper's partition when neither a number nor a stop rule is given: its
+#: experiments use 12.
 DEFAULT_LEVELS = 12
 #: More levels than any input needs; the analysis stops by itself when nothing can be removed.
 MAX_LEVELS = 1000
@@ -30,7 +34,7 @@ MAX_LEVELS = 1000
 class AnalysisOptions:
     """The options of :func:`wavelet_core.analyse`, resolved and checked."""
 
-    levels: int
+    levels: int | None
     partition: str
     prediction: str
     update: str
@@ -43,30 +47,95 @@ class AnalysisOptions:
     seed: int
     norm: str
     removal_fraction: float
+    outline_tolerance: float
 
     def as_dict(self) -> dict[str, Any]:
         """Return the options as plain numbers, strings and lists."""
         return asdict(self) | {"attribute_weights": list(self.attribute_weights)}
 
+    @property
+    def is_error_guided(self) -> bool:
+        """Whether partition, prediction and update are those that know of each other."""
+        return _is_error_guided(self.partition, self.prediction, self.update, self.signal)
 
-def parse_design(prediction: str, update: str) -> tuple[str, str]:
-    """Return the full names of the filters; ``prediction`` may carry both, as in ``"GLMN"``.
+    def of_partition(self) -> dict[str, Any]:
+        """Return the options that the partition looks at."""
+        return {name: getattr(self, name) for name in PARTITIONS[self.partition].options}
+
+
+def _is_error_guided(partition: str, prediction: str, update: str, signal: str) -> bool:
+    return (partition, prediction, signal) == ("surface", "barycentric", "z") and update in (
+        "minimum_norm",
+        "none",
+    )
+
+
+class Design(NamedTuple):
+    """The filters that were named; None for what was not."""
+
+    prediction: Prediction | None
+    update: Update | None
+
+
+def parse_design(prediction: str | None, update: str | None = None) -> Design:
+    """Return the filters that are named; ``prediction`` may carry both, as in ``"GLMN"``.
+
+    Raises
+    ------
+    OptionError
+        A name that no table holds, or an update beside another one in ``prediction``.
 
     Examples
     --------
-    >>> parse_design("GLMN", "none")
+    >>> design = parse_design("GLMN")
+    >>> design.prediction.name, design.update.name
     ('geometric', 'minimum_norm')
-    >>> parse_design("NNLS", "MO")
-    ('nnls', 'martinez_ortega')
+    >>> [row.name for row in parse_design("nnls", "MO")]
+    ['nnls', 'martinez_ortega']
     """
-    joined = prediction.upper()
-    for short, full in PREDICTIONS.items():
-        if joined.startswith(short) and joined[len(short) :] in UPDATES:
-            return full, UPDATES[joined[len(short) :]]
-    return (
-        _full_name(prediction, PREDICTIONS, "prediction"),
-        _full_name(update, UPDATES, "update"),
+    of_update = None if update is None else UPDATES.find(update)
+    if prediction is None:
+        return Design(None, of_update)
+    joined = _joined(prediction) if PREDICTIONS.look_up(prediction) is None else None
+    if joined is None:
+        return Design(PREDICTIONS.find(prediction), of_update)
+    if of_update is not None and of_update.name != joined[1].name:
+        raise OptionError(
+            "{0} {design} names the update {joined}, and {1} is {given}; leave one out.",
+            "prediction",
+            "update",
+            design=repr(prediction),
+            joined=joined[1].name,
+            given=of_update.name,
+        )
+    return Design(*joined)
+
+
+def _joined(name: object) -> tuple[Prediction, Update] | None:
+    """Return the two filters of a design such as ``"GLMN"``; None for anything else."""
+    if not isinstance(name, str):
+        return None
+    wanted = name.strip().upper()
+    return next(
+        (
+            (prediction, update)
+            for prediction in PREDICTIONS.values()
+            for update in UPDATES.values()
+            if wanted == (prediction.short + update.short).upper()
+        ),
+        None,
     )
+
+
+def refused_pair(prediction: str, update: str) -> bool:
+    """Whether the two filters are not to be used together: see docs/theory.md, Update."""
+    of_prediction = PREDICTIONS.find(prediction)
+    return _may_blow_up(of_prediction, UPDATES.find(update)) and not of_prediction.equation
+
+
+def _may_blow_up(prediction: Prediction, update: Update) -> bool:
+    """Whether the update divides by sums of weights that may cancel."""
+    return prediction.is_signed and update.divides_by_sums
 
 
 def resolve_options(
@@ -81,80 +150,202 @@ def resolve_options(
     max_error: float | None,
     max_rms: float | None,
     attribute_weights: Sequence[float] | None,
-    bending_weight: float,
-    seed: int,
+    bending_weight: float | None,
+    seed: int | None,
     norm: str | None,
     removal_fraction: float | None,
+    outline_tolerance: float,
 ) -> AnalysisOptions:
     """Return the options with defaults filled in and short names spelled out.
 
     Raises
     ------
     OptionError
-        A value that is not served.
+        A value out of bounds, a name that no table holds, or options that contradict each other.
     """
-    has_stop_rule = any(rule is not None for rule in (target_vertices, max_error, max_rms))
-    if levels is None:
-        levels = MAX_LEVELS if has_stop_rule else DEFAULT_LEVELS
-    if not 0 <= levels <= MAX_LEVELS:
-        raise OptionError(f"levels is {levels}; give 0 to {MAX_LEVELS}.")
-    if target_vertices is not None and target_vertices < 3:
-        raise OptionError(f"target_vertices is {target_vertices}; a mesh has at least 3.")
-    for name, value in (("max_error", max_error), ("max_rms", max_rms)):
-        if value is not None and not (np.isfinite(value) and value >= 0):
-            raise OptionError(f"{name} is {value}; give a distance of 0 or more in the unit of z.")
-    weights = (1.0,) * n_attributes if attribute_weights is None else tuple(attribute_weights)
-    if len(weights) != n_attributes or not all(np.isfinite(w) and w >= 0 for w in weights):
+    of_signal = SIGNALS.find(signal)
+    design = parse_design(prediction, update)
+    of_partition = _partition(partition, design, of_signal)
+    of_norm = NORMS.find(norm) if norm is not None else NORMS["rms" if max_error is None else "max"]
+    of_prediction = design.prediction or PREDICTIONS[of_partition.prediction]
+    of_update = design.update or UPDATES[_default_update(of_partition, of_norm)]
+    given = {
+        "norm": norm,
+        "removal_fraction": removal_fraction,
+        "bending_weight": bending_weight,
+        "seed": seed,
+    }
+    _require_use(of_partition, (name for name, value in given.items() if value is not None))
+    _require_stable(of_prediction, of_update)
+    targets = _whole("target_vertices", target_vertices, 3)
+    largest, mean = _number("max_error", max_error), _number("max_rms", max_rms)
+    has_stop_rule = any(rule is not None for rule in (targets, largest, mean))
+    most_levels = _whole("levels", levels, 0, MAX_LEVELS)
+    is_error_guided = _is_error_guided(
+        of_partition.name, of_prediction.name, of_update.name, of_signal.name
+    )
+    if most_levels is None and has_stop_rule:
+        most_levels = MAX_LEVELS
+    elif most_levels is None and not is_error_guided:
+        most_levels = DEFAULT_LEVELS
+    tolerance = _number("outline_tolerance", outline_tolerance)
+    if tolerance and not is_error_guided:
         raise OptionError(
-            f"attribute_weights are {weights}; give {n_attributes} numbers of 0 or more."
+            "{0} is used by {1} surface with {2} barycentric, {3} minimum_norm or none and {4} z; "
+            "here they are {partition}, {prediction}, {update} and {signal}.",
+            "outline_tolerance",
+            "partition",
+            "prediction",
+            "update",
+            "signal",
+            partition=of_partition.name,
+            prediction=of_prediction.name,
+            update=of_update.name,
+            signal=of_signal.name,
         )
-    if not (np.isfinite(bending_weight) and bending_weight >= 0):
-        raise OptionError(f"bending_weight is {bending_weight}; give 0 or more.")
-    if not 0 <= seed < 2**63:
-        raise OptionError(f"seed is {seed}; give a whole number of 0 or more.")
-    if norm is None:
-        norm = "rms" if max_error is None else "max"
-    if removal_fraction is None:
-        by_size = norm == "max" and target_vertices is not None and max_error is None
-        removal_fraction = MAX_NORM_REMOVAL_FRACTION if by_size else REMOVAL_FRACTION
-    if not 0 < removal_fraction <= 1:
-        raise OptionError(f"removal_fraction is {removal_fraction}; give more than 0, at most 1.")
-    if partition is None:
-        is_papers = prediction not in (None, "barycentric", "BL") or signal == "xyz"
-        partition = "quadric" if is_papers else "surface"
-    is_surface = partition == "surface"
-    if prediction is None:
-        prediction = "barycentric" if is_surface else "geometric"
-    if update is None:
-        update = "none" if is_surface and norm == "max" else "minimum_norm"
-    prediction, update = parse_design(prediction, update)
     return AnalysisOptions(
-        levels=int(levels),
-        partition=_one_of(partition, PARTITIONS, "partition"),
-        prediction=prediction,
-        update=update,
-        signal=_one_of(signal, SIGNALS, "signal"),
-        target_vertices=None if target_vertices is None else int(target_vertices),
-        max_error=None if max_error is None else float(max_error),
-        max_rms=None if max_rms is None else float(max_rms),
-        attribute_weights=tuple(float(w) for w in weights),
-        bending_weight=float(bending_weight),
-        seed=int(seed),
-        norm=_one_of(norm, NORMS, "norm"),
-        removal_fraction=float(removal_fraction),
+        levels=most_levels,
+        partition=of_partition.name,
+        prediction=of_prediction.name,
+        update=of_update.name,
+        signal=of_signal.name,
+        target_vertices=targets,
+        max_error=largest,
+        max_rms=mean,
+        attribute_weights=_weights(attribute_weights, n_attributes),
+        bending_weight=_or(1.0, _number("bending_weight", bending_weight)),
+        seed=_or(0, _whole("seed", seed, 0, 2**63 - 1)),
+        norm=of_norm.name,
+        removal_fraction=_fraction(removal_fraction, of_norm, targets, largest),
+        outline_tolerance=_or(0.0, tolerance),
     )
 
 
-def _full_name(name: str, names: dict[str, str], option: str) -> str:
-    if name in names.values():
-        return name
-    if name.upper() in names:
-        return names[name.upper()]
-    choices = ", ".join(f"{full} ({short})" for short, full in names.items())
-    raise OptionError(f"{option} is {name!r}; give one of {choices}.")
+def _partition(name: str | None, design: Design, signal: Signal) -> PartitionRow:
+    """Return the partition that is named, or the one that suits the filters and the signal."""
+    if name is not None:
+        return PARTITIONS.find(name)
+    surface = PARTITIONS["surface"]
+    fits = design.prediction is None or design.prediction.name == surface.prediction
+    return surface if fits and signal.keeps_plan else PARTITIONS["quadric"]
 
 
-def _one_of(name: str, names: Sequence[str], option: str) -> str:
-    if name not in names:
-        raise OptionError(f"{option} is {name!r}; give one of {', '.join(names)}.")
-    return name
+def _default_update(partition: PartitionRow, norm: Norm) -> str:
+    return norm.update if "norm" in partition.options else "minimum_norm"
+
+
+def _require_use(partition: PartitionRow, given: Iterable[str]) -> None:
+    """Refuse an option that the partition does not look at."""
+    for name in given:
+        if name not in partition.options:
+            users = [row.name for row in PARTITIONS.values() if name in row.options]
+            raise OptionError(
+                "{0} is used by {1} {users} only, and that is {partition} here; leave one out.",
+                name,
+                "partition",
+                users=" and ".join(users),
+                partition=partition.name,
+            )
+
+
+def _require_stable(prediction: Prediction, update: Update) -> None:
+    """Refuse a pair that blows up, or warn where it is the paper's own baseline."""
+    if not _may_blow_up(prediction, update):
+        return
+    if refused_pair(prediction.name, update.name):
+        raise OptionError(
+            "{0} {prediction} has weights of either sign, and {1} {update} divides by their sums, "
+            "which may vanish: details would grow without bound; take {1} {others}, or another "
+            "{0}.",
+            "prediction",
+            "update",
+            prediction=prediction.name,
+            update=update.name,
+            others=" or ".join(row.name for row in UPDATES.values() if not row.divides_by_sums),
+        )
+    warnings.warn(
+        f"prediction {prediction.name} has weights of either sign, and update {update.name} "
+        "divides by their sums, which may vanish: coarse levels may be far off; the paper's "
+        "other pairs are stable.",
+        UnstableDesignWarning,
+        stacklevel=4,
+    )
+
+
+def _fraction(
+    value: float | None, norm: Norm, target_vertices: int | None, max_error: float | None
+) -> float:
+    if value is None:
+        to_size = target_vertices is not None and max_error is None
+        return norm.removal_fraction_to_size if to_size else norm.removal_fraction
+    fraction = _as_float(value)
+    if not 0 < fraction <= 1:
+        raise OptionError(
+            "{0} is {given}; give more than 0, at most 1.", "removal_fraction", given=value
+        )
+    return fraction
+
+
+def _weights(weights: Sequence[float] | None, n_attributes: int) -> tuple[float, ...]:
+    if weights is None:
+        return (1.0,) * n_attributes
+    numbers = tuple(_as_float(weight) for weight in weights)
+    if len(numbers) != n_attributes or not all(0 <= number < math.inf for number in numbers):
+        raise OptionError(
+            "{0} are {given}; give {n_attributes} numbers of 0 or more.",
+            "attribute_weights",
+            given=tuple(weights),
+            n_attributes=n_attributes,
+        )
+    return numbers
+
+
+def _number(option: str, value: float | None) -> float | None:
+    """Return a finite number of 0 or more, or None where none is given."""
+    if value is None:
+        return None
+    number = _as_float(value)
+    if not 0 <= number < math.inf:
+        raise OptionError("{0} is {given}; give a number of 0 or more.", option, given=value)
+    return number
+
+
+def _whole(option: str, value: float | None, low: int, high: int | None = None) -> int | None:
+    """Return a whole number within bounds, or None where none is given."""
+    if value is None:
+        return None
+    number = as_whole(value)
+    if number is None or number < low or (high is not None and number > high):
+        bounds = f"of {low} or more" if high is None else f"from {low} to {high}"
+        raise OptionError(
+            "{0} is {given}; give a whole number {bounds}.", option, given=value, bounds=bounds
+        )
+    return number
+
+
+def as_whole(value: Any) -> int | None:
+    """Return an integer of any type, or a float without a fraction, as int; None for others.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> as_whole(np.int64(3)), as_whole(3.0), as_whole(2.7), as_whole("3")
+    (3, 3, None, None)
+    """
+    try:
+        return operator.index(value)
+    except TypeError:
+        number = _as_float(value)
+    return int(number) if number.is_integer() else None
+
+
+def _as_float(value: Any) -> float:
+    """Return a number as float; NaN, which no bound admits, for what is none."""
+    try:
+        return math.nan if isinstance(value, str) else float(value)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+def _or(default: Any, value: Any) -> Any:
+    return default if value is None else value

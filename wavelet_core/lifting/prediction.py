@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,19 +19,9 @@ from .._kernels.prediction import (
     plane_weights,
     ring_columns,
 )
+from .._table import Table
 from .._validate import FloatArray
 from ..mesh.connectivity import Connectivity
-
-#: Full names of the prediction filters, by the paper's short ones.
-PREDICTIONS = {
-    "UG": "uniform",
-    "CL": "cotangent",
-    "GL": "geometric",
-    "NNLS": "nnls",
-    "LS": "least_squares",
-    "BL": "barycentric",
-    "PL": "plane",
-}
 
 
 class Removal(NamedTuple):
@@ -61,69 +52,80 @@ class Removal(NamedTuple):
 
 
 def predict(method: str, removal: Removal) -> csr_array:
-    r"""Return the prediction filter P, ``(n_odd, n_even)``; its rows sum to one.
+    """Return the prediction filter P, ``(n_odd, n_even)``; its rows sum to one.
 
     Parameters
     ----------
     method : str
-        A full name out of ``PREDICTIONS``.
+        A name out of :data:`PREDICTIONS`.
     removal : Removal
 
-    Notes
-    -----
-    With :math:`\omega_m` the weight of neighbour m and :math:`p_m = \omega_m / \sum \omega`
-    (Eq. 41):
-
-    - ``uniform`` (UG): all the same.
-    - ``cotangent`` (CL): cot α + cot β of the two angles opposite the edge, in normalised x, y,
-      z. *Our choice:* a negative sum counts as 0, and a star where all are is predicted
-      uniformly; left alone such stars give weights without bound.
-    - ``geometric`` (GL): one over the edge's length in the space of coordinates and attributes
-      (Eq. 42).
-    - ``nnls`` (NNLS): the non-negative weights of sum one that leave the smallest detail vector.
-      *Our choice:* a damping of 1e-8 of the squared ring size makes them unique where several
-      sets are equally good.
-    - ``least_squares`` (LS): as NNLS, damping included, with any sign; the paper's unstable
-      baseline.
-    - ``barycentric`` (BL; beyond the paper): the coordinates of the vertex, in plan, in the
-      coarse face that now covers it, so that the detail is its vertical distance from the
-      coarse surface. The row also names the rest of the ring where all three corners are
-      locked, with weight 0, so that the update has somewhere to go.
-    - ``plane`` (PL; beyond the paper): the value, at the vertex, of the plane fitted to its ring
-      by least squares in plan. Any tilted plane has zero details (two vanishing moments), and of
-      all weights that do so these have the least norm. A vertex lies within the hull of its
-      upright ring, where convex weights do it too, so the squared norm is at most 1 and noise is
-      never amplified. *Our choice:* even weights where signal "xyz" has folded the ring.
+    Raises
+    ------
+    OptionError
+        A name that the table does not hold.
     """
-    if method == "barycentric":
-        return _barycentric(removal)
-    odd, connectivity = removal.odd, removal.connectivity
-    row_indptr = np.zeros(len(odd) + 1, dtype=np.int64)
-    np.cumsum(connectivity.ring_size[odd], out=row_indptr[1:])
-    columns = np.empty(row_indptr[-1], dtype=np.int32)
-    rings = (connectivity.star_indptr, connectivity.ring)
-    run_in_ranges(ring_columns, len(odd), odd, row_indptr, *rings, removal.even_position, columns)
-    weights = np.empty(len(columns))
-    arguments: tuple = (odd, row_indptr, *rings)
-    if method == "uniform":
-        sizes = np.diff(row_indptr)
-        weights = np.repeat(1.0 / np.maximum(sizes, 1), sizes)
-    elif method == "cotangent":
-        arguments += (connectivity.kind, removal.points, weights)
-        run_in_ranges(cotangent_weights, len(odd), *arguments)
-    elif method == "plane":
-        run_in_ranges(plane_weights, len(odd), *arguments, removal.plan, weights)
-    else:
-        kernel = {
-            "geometric": geometric_weights,
-            "nnls": nnls_weights,
-            "least_squares": least_squares_weights,
-        }[method]
-        run_in_ranges(kernel, len(odd), *arguments, removal.points, weights)
-    return csr_array((weights, columns, row_indptr), shape=(len(odd), len(removal.even)))
+    return PREDICTIONS.find(method).filter(removal)
 
 
-def _barycentric(removal: Removal) -> csr_array:
+# -- the filters ---------------------------------------------------------------------------------
+#
+# With w_m the weight of neighbour m, p_m = w_m / sum of all w (Eq. 41).
+
+
+def uniform(removal: Removal) -> csr_array:
+    """Return equal weights."""
+    rows = _ring_rows(removal)
+    sizes = np.diff(rows.indptr)
+    return _matrix(removal, rows, np.repeat(1.0 / np.maximum(sizes, 1), sizes))
+
+
+def cotangent(removal: Removal) -> csr_array:
+    """Return weights cot α + cot β of the angles opposite the edge, in normalised x, y, z.
+
+    *Our choice:* a negative sum counts as 0, and a star where all are is predicted uniformly; left
+    alone such stars give weights without bound.
+    """
+    return _by_kernel(cotangent_weights, removal, removal.connectivity.kind, removal.points)
+
+
+def geometric(removal: Removal) -> csr_array:
+    """Return weights of one over the edge's length, in coordinates and attributes (Eq. 42)."""
+    return _by_kernel(geometric_weights, removal, removal.points)
+
+
+def nnls(removal: Removal) -> csr_array:
+    """Return the non-negative weights of sum one that leave the smallest detail vector.
+
+    *Our choice:* a damping of 1e-8 of the squared ring size makes them unique where several sets
+    are equally good.
+    """
+    return _by_kernel(nnls_weights, removal, removal.points)
+
+
+def least_squares(removal: Removal) -> csr_array:
+    """Return as :func:`nnls`, damping included, weights of any sign: the paper's baseline."""
+    return _by_kernel(least_squares_weights, removal, removal.points)
+
+
+def plane(removal: Removal) -> csr_array:
+    """Return the weights that give the value, at the vertex, of the plane fitted to its ring.
+
+    Any tilted plane has zero details (two vanishing moments), and of all weights that do so these
+    have the least norm. A vertex lies within the hull of its upright ring, where convex weights
+    do it too, so the squared norm is at most 1 and noise is never amplified. *Our choice:* even
+    weights where signal "xyz" has folded the ring.
+    """
+    return _by_kernel(plane_weights, removal, removal.plan)
+
+
+def barycentric(removal: Removal) -> csr_array:
+    """Return the coordinates of the vertex, in plan, in the coarse face that now covers it.
+
+    So the detail is its vertical distance from the coarse surface. The row also names the rest of
+    the ring where all three corners are locked, with weight 0, so that the update has somewhere
+    to go.
+    """
     odd, connectivity = removal.odd, removal.connectivity
     corners = np.empty((len(odd), 3), dtype=np.int32)
     weights = np.empty((len(odd), 3))
@@ -149,6 +151,45 @@ def _barycentric(removal: Removal) -> csr_array:
     return csr_array((data, columns, row_indptr), shape=(len(odd), len(removal.even)))
 
 
+class _RingRows(NamedTuple):
+    """Rows of P over the one-rings: CSR without its data."""
+
+    indptr: NDArray[np.int64]
+    columns: NDArray[np.int32]
+
+
+def _ring_rows(removal: Removal) -> _RingRows:
+    odd, connectivity = removal.odd, removal.connectivity
+    indptr = np.zeros(len(odd) + 1, dtype=np.int64)
+    np.cumsum(connectivity.ring_size[odd], out=indptr[1:])
+    columns = np.empty(indptr[-1], dtype=np.int32)
+    rings = (connectivity.star_indptr, connectivity.ring)
+    run_in_ranges(ring_columns, len(odd), odd, indptr, *rings, removal.even_position, columns)
+    return _RingRows(indptr, columns)
+
+
+def _by_kernel(kernel: Callable[..., Any], removal: Removal, *arguments: NDArray) -> csr_array:
+    """Return P with the weights that a kernel gives the ring of each odd vertex."""
+    rows, connectivity = _ring_rows(removal), removal.connectivity
+    weights = np.empty(len(rows.columns))
+    run_in_ranges(
+        kernel,
+        len(removal.odd),
+        removal.odd,
+        rows.indptr,
+        connectivity.star_indptr,
+        connectivity.ring,
+        *arguments,
+        weights,
+    )
+    return _matrix(removal, rows, weights)
+
+
+def _matrix(removal: Removal, rows: _RingRows, weights: FloatArray) -> csr_array:
+    shape = (len(removal.odd), len(removal.even))
+    return csr_array((weights, rows.columns, rows.indptr), shape=shape)
+
+
 def _with_unlocked_ring(
     removal: Removal,
     stuck: NDArray[np.int64],
@@ -169,3 +210,63 @@ def _with_unlocked_ring(
     columns = np.insert(columns, where, np.concatenate(extra_columns))
     data = np.insert(data, where, 0.0)
     return columns, data, np.concatenate([[0], np.cumsum(counts)])
+
+
+# -- the table -----------------------------------------------------------------------------------
+
+
+class Prediction(NamedTuple):
+    """One prediction filter: a row of :data:`PREDICTIONS`.
+
+    name, short : str, what `analyse` takes
+    filter : callable, from a Removal to P, (n_odd, n_even), whose rows sum to one
+    help : str, one line for lists
+    equation : str, its number in the paper; empty for what is beyond the paper
+    in_plan : bool, whether it looks at x and y alone
+    is_signed : bool, whether weights may be negative, so that a sum of them may vanish
+    """
+
+    name: str
+    short: str
+    filter: Callable[[Removal], csr_array]
+    help: str
+    equation: str = ""
+    in_plan: bool = False
+    is_signed: bool = False
+
+
+#: The prediction filters. A new one is a function above and a row here, and no more: the options,
+#: the help of the command line, the dialogs and the tests read the table.
+PREDICTIONS = Table(
+    "prediction",
+    (
+        Prediction(
+            "geometric", "GL", geometric,
+            "one over the distance in coordinates and attributes", "Eq. 42",
+        ),
+        Prediction("uniform", "UG", uniform, "the mean of the neighbours", "Eq. 41"),
+        Prediction(
+            "cotangent", "CL", cotangent,
+            "cotangents of the angles opposite each edge, not below 0", "Eq. 41",
+        ),
+        Prediction(
+            "nnls", "NNLS", nnls,
+            "the non-negative weights that leave the smallest detail", "Eq. 40",
+        ),
+        Prediction(
+            "least_squares", "LS", least_squares,
+            "the same with weights of any sign; can be unstable", "Eq. 40",
+            is_signed=True,
+        ),
+        Prediction(
+            "barycentric", "BL", barycentric,
+            "from the coarse triangle that now covers the vertex",
+            in_plan=True,
+        ),
+        Prediction(
+            "plane", "PL", plane,
+            "from the plane fitted to the neighbours; slopes have no details",
+            in_plan=True, is_signed=True,
+        ),
+    ),
+)  # fmt: skip

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._validate import FloatArray, IntArray, frozen
-from ..errors import PyramidError
+from .._validate import FloatArray, IntArray, are_equal, counted, frozen, owned
+from ..errors import OptionError, PyramidError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
+from ..partition.stopping import StopRecord
+from ..progress import Progress
 from ._checks import check_parts
+from .signal import SIGNALS
 from .step import FilterPair, Step, split_integrals, synthesise_level
-from .update import update_filter
+from .update import UPDATES, update_filter
+
+if TYPE_CHECKING:
+    from ..accuracy.level_errors import LevelErrors
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Detail:
     """The detail layer of one step, one row for each vertex that it removed.
 
@@ -39,10 +46,22 @@ class Detail:
     vectors: FloatArray
     magnitude: FloatArray
 
+    def __eq__(self, other: object) -> bool:
+        return are_equal(self, other) if isinstance(other, Detail) else NotImplemented
 
-@dataclass(frozen=True, slots=True)
+    __hash__ = None  # type: ignore[assignment]  # as for meshes
+
+    def __repr__(self) -> str:
+        vertices = counted(len(self.vertex_ids), "vertex", "vertices")
+        return f"<Detail {vertices}, {counted(self.vectors.shape[1], 'channel')}>"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Pyramid:
     """A wavelet decomposition of a mesh: level 0 is the coarsest, level ``n_levels`` the input.
+
+    It is a sequence of meshes, the coarsest first: ``pyramid[0]`` is the coarsest,
+    ``pyramid[-1]`` the input, and iteration synthesises all of them in one pass.
 
     Attributes
     ----------
@@ -62,6 +81,17 @@ class Pyramid:
     locked : ndarray of bool, shape (n_vertices,), or None
     parameters : dict
         Every option of the analysis, resolved.
+    stop : StopRecord or None
+        Why the analysis ended; None for a pyramid that comes from elsewhere.
+
+    Examples
+    --------
+    >>> from wavelet_core import analyse, synthetic
+    >>> pyramid = analyse(synthetic.hills(20, 30), levels=3, partition="quadric")
+    >>> pyramid
+    <Pyramid 3 levels, 600 → 234 vertices, z>
+    >>> len(pyramid), pyramid[-1] == pyramid.mesh(3)
+    (4, True)
     """
 
     faces: NDArray[np.int32]
@@ -73,6 +103,7 @@ class Pyramid:
     update: str
     locked: NDArray[np.bool_] | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
+    stop: StopRecord | None = field(default=None, compare=False)
 
     @classmethod
     def from_parts(
@@ -87,6 +118,7 @@ class Pyramid:
         update: str,
         locked: NDArray | None = None,
         parameters: Mapping[str, Any] | None = None,
+        stop: StopRecord | None = None,
     ) -> Pyramid:
         """Return the pyramid of parts that nobody has checked yet, such as those of a file.
 
@@ -97,15 +129,44 @@ class Pyramid:
         """
         check_parts(faces, horizontal, coarse, steps, channels, signal, update, locked)
         return cls(
-            faces=frozen(np.asarray(faces, dtype=np.int32)),
-            horizontal=None if horizontal is None else frozen(np.asarray(horizontal, np.float64)),
-            coarse=frozen(np.asarray(coarse, dtype=np.float64)),
-            steps=tuple(steps),
+            faces=owned(faces, np.int32),
+            horizontal=None if horizontal is None else owned(horizontal, np.float64),
+            coarse=owned(coarse, np.float64),
+            steps=tuple(step.owned() for step in steps),
             channels=tuple(channels),
             signal=signal,  # type: ignore[arg-type]
             update=update,
-            locked=None if locked is None else frozen(np.asarray(locked, dtype=bool)),
+            locked=None if locked is None else owned(locked, np.bool_),
             parameters=dict(parameters or {}),
+            stop=stop,
+        )
+
+    # -- a sequence of meshes ----------------------------------------------------------------------
+
+    def __len__(self) -> int:
+        return self.n_levels + 1
+
+    def __getitem__(self, level: SupportsIndex) -> TriangleMesh:
+        index = operator.index(level)
+        return self.mesh(index + len(self) if -len(self) <= index < 0 else index)
+
+    def __iter__(self) -> Iterator[TriangleMesh]:
+        ids = self._ids_by_level(0)
+        faces = self._faces_by_level(0)
+        for level, coefficients in self._coefficients(ids):
+            yield self._assemble(coefficients, ids[level], faces.pop())
+
+    def __eq__(self, other: object) -> bool:
+        return are_equal(self, other) if isinstance(other, Pyramid) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # as for meshes
+
+    def __repr__(self) -> str:
+        finest = counted(self.n_vertices(self.n_levels), "vertex", "vertices")
+        sizes = f"{self.n_vertices(self.n_levels):,} → {self.n_vertices(0):,} vertices"
+        return (
+            f"<Pyramid {counted(self.n_levels, 'level')}, {sizes if self.steps else finest}, "
+            f"{' + '.join(self.channels)}>"
         )
 
     @property
@@ -114,9 +175,19 @@ class Pyramid:
         return len(self.steps)
 
     @property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates among the channels, which come first."""
+        return SIGNALS[self.signal].coordinates
+
+    @property
     def attribute_names(self) -> tuple[str, ...]:
         """Names of the attributes among the channels."""
-        return self.channels[1:] if self.signal == "z" else self.channels[3:]
+        return self.channels[len(self.coordinates) :]
+
+    def columns_of(self, mesh: TriangleMesh) -> FloatArray:
+        """Return the values of the channels at the vertices of a mesh, ``(n_vertices, k)``."""
+        lifted = mesh.vertices[:, 3 - len(self.coordinates) :]
+        return np.hstack([lifted, mesh.attributes])
 
     def n_vertices(self, level: int) -> int:
         """Return the number of vertices of a level."""
@@ -149,15 +220,6 @@ class Pyramid:
     def synthesise(self, level: int | None = None) -> TriangleMesh:
         """Return the mesh of a level; by default of the finest, which equals the input."""
         return self.mesh(self.n_levels if level is None else level)
-
-    def meshes(self, start: int = 0) -> Iterator[tuple[int, TriangleMesh]]:
-        """Yield ``(level, mesh)`` from level ``start`` up to the finest, in one synthesis pass."""
-        self._require_level(start)
-        ids = self._ids_by_level(0)
-        faces = self._faces_by_level(start)
-        for level, coefficients in self._coefficients(ids):
-            if level >= start:
-                yield level, self._assemble(coefficients, ids[level], faces.pop())
 
     def detail(self, level: int) -> Detail:
         """Return the detail layer of the step from ``level + 1`` to ``level``."""
@@ -216,13 +278,81 @@ class Pyramid:
         coarse : float or sequence of float
             Gain of the coarsest level's coefficients.
 
+        Raises
+        ------
+        OptionError
+            A level that has no details, or gains that do not fit the channels.
+
         See Also
         --------
-        wavelet_core.filtering.gains.scaled, wavelet_core.filtering.gains.band_gains
-        """
-        from ..filtering.gains import scaled
+        wavelet_core.band_gains : the gains that keep a band of details.
 
-        return scaled(self, gains, coarse)
+        Notes
+        -----
+        Gains of 1 return the same coefficients to the bit. With all gains from level k up at 0
+        the result is the mesh of level k interpolated up by the prediction filters (for updates
+        other than the one-ring mean, which has a term in the even coefficients).
+        """
+        for level in gains:
+            self.require_details(level)
+        factors = {level: self._as_gain(gain, level) for level, gain in gains.items()}
+        steps = tuple(
+            replace(step, details=frozen(step.details * factors[level]))
+            if level in factors
+            else step
+            for level, step in enumerate(self.steps)
+        )
+        factor = self._as_gain(coarse, "coarse")
+        return self.with_parts(steps=steps, coarse=frozen(self.coarse * factor))
+
+    def require_details(self, level: int, option: str = "gains") -> None:
+        """Raise :class:`OptionError` unless there are details at a level.
+
+        Parameters
+        ----------
+        level : int
+        option : str
+            The parameter that names it, for the error.
+        """
+        if not 0 <= level < self.n_levels:
+            raise OptionError(
+                "there are no details at level {level}; they are at 0 to {last}.",
+                option,
+                level=level,
+                last=self.n_levels - 1,
+            )
+
+    def _as_gain(self, gain: float | Sequence[float], level: int | str) -> FloatArray:
+        array = np.asarray(gain, dtype=np.float64)
+        if array.shape not in ((), (len(self.channels),)) or not np.isfinite(array).all():
+            raise OptionError(
+                "the gain of level {level} is {gain}; give a number or one for each of "
+                "{n_channels} channels.",
+                "coarse" if level == "coarse" else "gains",
+                level=level,
+                gain=gain,
+                n_channels=len(self.channels),
+            )
+        return array
+
+    # The two doors from a pyramid to a later room of the package: who holds one asks it for its
+    # errors and its denoised form, and the rooms that know how are built on pyramids themselves.
+
+    def errors(self, progress: Progress | None = None) -> list[LevelErrors]:
+        """Return size and errors of every level, the coarsest first.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called with a fraction in [0, 1]; the work stops when it returns False.
+
+        See Also
+        --------
+        wavelet_core.metrics.level_errors : which says what the figures mean.
+        """
+        from ..accuracy.level_errors import level_errors
+
+        return level_errors(self, progress)
 
     def denoised(self, sigma: float | None = None, **options: Any) -> Pyramid:
         """Return the pyramid with thresholded details.
@@ -247,12 +377,15 @@ class Pyramid:
 
     def _require_level(self, level: int) -> None:
         if not 0 <= level <= self.n_levels:
-            raise PyramidError(f"there is no level {level}; the levels are 0 to {self.n_levels}.")
+            raise PyramidError(
+                f"there is no level {level}; the levels are 0 to {self.n_levels}.", level
+            )
 
     def _require_step(self, level: int) -> None:
         if not 0 <= level < self.n_levels:
             raise PyramidError(
-                f"there are no details at level {level}; they are at 0 to {self.n_levels - 1}."
+                f"there are no details at level {level}; they are at 0 to {self.n_levels - 1}.",
+                level,
             )
 
     def _locked(self, ids: NDArray) -> NDArray[np.bool_]:
@@ -304,7 +437,7 @@ class Pyramid:
         """Scaling coefficients from level 0 up."""
         coefficients = self.coarse
         yield 0, coefficients
-        integrals = self._integrals_by_level(0) if self.update == "minimum_norm" else {}
+        integrals = self._integrals_by_level(0) if UPDATES[self.update].uses_integrals else {}
         for level, step in enumerate(self.steps):
             n_fine = len(ids[level + 1])
             even = even_positions(step.odd, n_fine)

@@ -23,15 +23,14 @@ def level_spacings(pyramid: Pyramid) -> FloatArray:
 
     Examples
     --------
-    >>> from wavelet_core import analyse, synthetic
-    >>> from wavelet_core.lifting.spacings import level_spacings
+    >>> from wavelet_core import analyse, level_spacings, synthetic
     >>> pyramid = analyse(synthetic.hills(20, 30, cell=10.0), levels=6, partition="quadric")
     >>> spacings = level_spacings(pyramid)
     >>> float(spacings[-1]), bool(spacings[0] > 15)
     (10.0, True)
     """
     spacings = np.full(pyramid.n_levels + 1, np.nan)
-    for level, mesh in pyramid.meshes():
+    for level, mesh in enumerate(pyramid):
         if mesh.n_faces:
             corners = mesh.vertices[mesh.faces, :2]
             sides = corners - corners[:, [1, 2, 0]]

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from .._validate import FloatArray
-from .update import apply_ring_means, coarse_integrals, update_filter
+from .._validate import FloatArray, are_equal, counted, owned
+from .update import UPDATES, apply_ring_means, coarse_integrals, update_filter
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Step:
     """One analysis step, from level l + 1 to level l.
 
@@ -39,6 +39,26 @@ class Step:
     indices: NDArray[np.int32]
     weights: FloatArray
     details: FloatArray
+
+    def __eq__(self, other: object) -> bool:
+        return are_equal(self, other) if isinstance(other, Step) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # as for meshes
+
+    def __repr__(self) -> str:
+        channels = counted(self.details.shape[1], "channel")
+        return f"<Step {counted(self.n_odd, 'odd vertex', 'odd vertices')}, {channels}>"
+
+    def owned(self) -> Step:
+        """Return the step with arrays that nobody can change; the caller's stay as they are."""
+        return Step(
+            owned(self.odd, np.int32),
+            owned(self.target, np.int32),
+            owned(self.indptr, np.int64),
+            owned(self.indices, np.int32),
+            owned(self.weights, np.float64),
+            owned(self.details, np.float64),
+        )
 
     @property
     def n_odd(self) -> int:
@@ -97,9 +117,10 @@ def analyse_level(
     odd_integrals, coarser = split_integrals(integrals, odd, even, prediction)
     coarse = fine[even]
     details = fine[odd] - prediction @ coarse  # Eq. 30
-    if method == "one_ring_mean":
+    update = UPDATES.find(method)
+    if update.is_sequential:
         coarse = apply_ring_means(coarse, details, prediction, locked[even])
-    elif method != "none":
+    elif not update.is_empty:
         coarse = coarse + (
             update_filter(method, prediction, odd_integrals, coarser, locked[even]) @ details
         )  # Eq. 31
@@ -117,9 +138,10 @@ def synthesise_level(
     locked: NDArray[np.bool_],
 ) -> FloatArray:
     """Return the scaling coefficients of the finer level: the mirror of :func:`analyse_level`."""
-    if method == "one_ring_mean":
+    update = UPDATES.find(method)
+    if update.is_sequential:
         coarse = apply_ring_means(coarse, details, prediction, locked[even], undo=True)
-    elif method != "none":
+    elif not update.is_empty:
         odd_integrals, coarser = split_integrals(integrals, odd, even, prediction)
         coarse = coarse - (
             update_filter(method, prediction, odd_integrals, coarser, locked[even]) @ details

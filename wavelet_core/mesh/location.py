@@ -29,7 +29,9 @@ class Cover(NamedTuple):
     at_c: FloatArray
 
 
-def surface_errors(mesh: TriangleMesh, points: FloatArray) -> FloatArray:
+def surface_errors(
+    mesh: TriangleMesh, points: FloatArray, cover: Cover | None = None
+) -> FloatArray:
     """Return the vertical distance of points from a surface.
 
     Parameters
@@ -38,6 +40,8 @@ def surface_errors(mesh: TriangleMesh, points: FloatArray) -> FloatArray:
         The surface; linear on each face.
     points : ndarray, shape (n_points, 3)
         x, y, z in the unit of the mesh.
+    cover : Cover, optional
+        What `cover_of` gives for them, where it is known already.
 
     Returns
     -------
@@ -45,7 +49,7 @@ def surface_errors(mesh: TriangleMesh, points: FloatArray) -> FloatArray:
         z of the point minus z of the surface at its x, y; NaN where no face covers it. Where
         faces overlap in plan, the first one counts.
     """
-    cover = cover_of(mesh, points[:, :2])
+    cover = cover_of(mesh, points[:, :2]) if cover is None else cover
     z = mesh.vertices[:, 2]
     a, b, c = mesh.faces[cover.face].T
     surface = z[a] + cover.at_b * (z[b] - z[a]) + cover.at_c * (z[c] - z[a])

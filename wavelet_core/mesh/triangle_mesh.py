@@ -8,14 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._validate import FloatArray, IntArray, as_attributes, as_faces, as_vertices, frozen
+from .._validate import (
+    FloatArray,
+    IntArray,
+    are_equal,
+    as_attributes,
+    as_faces,
+    as_vertices,
+    counted,
+    frozen,
+)
 from ..errors import MeshError
 
 #: Faces whose areas are worked out together.
 FACES_AT_ONCE = 1 << 14
 
 
-@dataclass(frozen=True, slots=True, init=False)
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class TriangleMesh:
     """A triangulated surface with attributes at its vertices.
 
@@ -49,8 +58,8 @@ class TriangleMesh:
     --------
     >>> from wavelet_core import TriangleMesh
     >>> mesh = TriangleMesh([[0, 0, 1], [1, 0, 2], [0, 1, 3]], [[0, 1, 2]])
-    >>> mesh.n_vertices, mesh.n_faces
-    (3, 1)
+    >>> mesh
+    <TriangleMesh 3 vertices, 1 face>
     """
 
     vertices: FloatArray
@@ -211,6 +220,15 @@ class TriangleMesh:
         face_array[clockwise] = face_array[clockwise, ::-1]
         return cls(vertex_array, face_array, attributes, attribute_names)
 
+    def __eq__(self, other: object) -> bool:
+        return are_equal(self, other) if isinstance(other, TriangleMesh) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # arrays of millions are no keys
+
+    def __repr__(self) -> str:
+        sizes = [counted(self.n_vertices, "vertex", "vertices"), counted(self.n_faces, "face")]
+        return f"<TriangleMesh {', '.join([*sizes, *_listed(self.attribute_names)])}>"
+
     @property
     def n_vertices(self) -> int:
         """Number of vertices."""
@@ -225,6 +243,10 @@ class TriangleMesh:
     def plan_areas(self) -> FloatArray:
         """Signed areas of the faces in plan, ``(n_faces,)``; positive is counter-clockwise."""
         return 0.5 * _doubled_plan_areas(self.vertices, self.faces)
+
+
+def _listed(names: Sequence[str]) -> list[str]:
+    return [" + ".join(names)] if names else []
 
 
 def _doubled_plan_areas(vertices: FloatArray, faces: IntArray) -> FloatArray:

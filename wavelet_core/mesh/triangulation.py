@@ -8,10 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._validate import FloatArray, IntArray
-from ..errors import MeshError, MissingDependencyError
+from ..errors import MeshError, MissingDependencyError, OptionError
 
 #: A hull face is a sliver when its doubled area is at most this part of its longest edge squared.
 SLIVER_TOLERANCE = 1e-9
+
+
+#: By rule: which way the points of one place are ranked by their heights.
+_SIGN_OF_RULE = {"lowest": 1.0, "highest": -1.0, "first": 0.0}
 
 
 class Merged(NamedTuple):
@@ -25,21 +29,25 @@ class Merged(NamedTuple):
     representative: IntArray
 
 
-def merge_duplicates(points: FloatArray) -> Merged:
+def merge_duplicates(points: FloatArray, rule: str = "lowest") -> Merged:
     """Return which of the points that share x and y exactly stand for them.
 
     Parameters
     ----------
     points : ndarray, shape (n_points, 3)
         x, y and z.
+    rule : {"lowest", "highest", "first"}
+        Which point of each group is kept, ties going to the first.
 
-    Returns
-    -------
-    Merged
-        The lowest point of each group is kept, ties going to the first.
+    Raises
+    ------
+    OptionError
+        There is no such rule.
     """
+    if rule not in _SIGN_OF_RULE:
+        raise OptionError(f"duplicates must be one of {', '.join(_SIGN_OF_RULE)}, and is {rule!r}.")
     n_points = len(points)
-    order = np.lexsort((points[:, 2], points[:, 1], points[:, 0]))
+    order = np.lexsort((_SIGN_OF_RULE[rule] * points[:, 2], points[:, 1], points[:, 0]))
     x, y = points[order, 0], points[order, 1]
     is_first = np.ones(n_points, dtype=bool)
     is_first[1:] = (x[1:] != x[:-1]) | (y[1:] != y[:-1])

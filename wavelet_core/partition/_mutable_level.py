@@ -1,8 +1,9 @@
-"""The working state of a surface-guided analysis: one level, collapsed in place."""
+"""The working state of an error-guided analysis: one level, collapsed in place."""
 
 from __future__ import annotations
 
 import copy
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,13 +21,14 @@ from .._kernels.half_edges import (
 from .._kernels.surface_choice import (
     CANDIDATE,
     TAKEN,
+    check_links,
     collapse_all,
     find_cheapest,
     measure_rings,
     record_rings,
     take_cheapest,
 )
-from .._kernels.surface_cost import LARGEST, LEAST_SQUARES, collapse_costs
+from .._kernels.surface_cost import LARGEST, LEAST_SQUARES, Limits, collapse_costs
 from .._kernels.surface_points import (
     FacePoints,
     Moments,
@@ -39,14 +41,37 @@ from .._kernels.surface_points import (
     update_heights,
 )
 from .._validate import FloatArray, frozen
-from ..lifting.step import Step
+from ._level_state import FaceState, VertexState
+from .outline import tolerant_outline
 
-#: Part of the vertices that a level may take, by whose dearest the others' costs are judged.
+#: The cheapest part of the vertices that a level may take, by which the cost of the others is
+#: limited: one sixteenth (not tuned; any small part would do).
 CHEAPEST_SHARE = 16
-#: Errors below this part of the range of z are rounding.
-ROUNDING = 1e-9
-#: Arrays are packed when no more than this share of them is in use.
+#: Height errors below this part of the range of z never limit a cost: what single-precision input
+#: leaves of a plane is some 1e-8 of its range.
+NEGLIGIBLE_ERROR = 1e-9
+#: Differences of heights below this part of the largest height of the input are rounding: 64 times
+#: the spacing of doubles there, for the few operations between a height and its error.
+HEIGHT_STEP = 2.0**-46
+#: Arrays are packed when no more than this share of them is in use: measured, packing after each
+#: tenth of the vertices is slower, and waiting until half have gone is no faster.
 PACKED_SHARE = 0.7
+
+
+class CollapseStep(NamedTuple):
+    """One step of an error-guided analysis, in ids of the finer level.
+
+    odd, target : (n_odd,) int32, the vertices that go, and onto which
+    indptr, indices, weights : the prediction filter in CSR, columns in the order of those that stay
+    details : (n_odd, n_channels) float64
+    """
+
+    odd: NDArray[np.int32]
+    target: NDArray[np.int32]
+    indptr: NDArray[np.int64]
+    indices: NDArray[np.int32]
+    weights: FloatArray
+    details: FloatArray
 
 
 class SurfaceLevel:
@@ -65,6 +90,9 @@ class SurfaceLevel:
     locked : ndarray of bool, shape (n_vertices,)
     with_update : bool
         Whether the minimum-norm update follows each step.
+    outline_tolerance : float
+        How far input vertices of the outline may lie from it, in the unit of x and y; with 0 an
+        outline vertex goes only where the outline runs straight.
     """
 
     def __init__(
@@ -74,15 +102,19 @@ class SurfaceLevel:
         faces: NDArray[np.int32],
         locked: NDArray[np.bool_],
         with_update: bool,
+        outline_tolerance: float = 0.0,
     ) -> None:
         n_vertices, n_faces, n_channels = len(plan), len(faces), heights.shape[1]
-        self._mesh, has_one_fan = _half_edges(faces, n_vertices)
-        origin = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
+        self._mesh, n_fans = _half_edges(faces, n_vertices)
+        centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
+        # about a local origin also vertically, so that sums of squares keep their digits
+        self._z_origin = heights.min(axis=0) + np.ptp(heights, axis=0) / 2
+        local = heights - self._z_origin
         self._surface = Surface(
-            np.ascontiguousarray(plan[:, 0] - origin[0]),
-            np.ascontiguousarray(plan[:, 1] - origin[1]),
-            heights.copy(),
-            heights,
+            np.ascontiguousarray(plan[:, 0] - centre[0]),
+            np.ascontiguousarray(plan[:, 1] - centre[1]),
+            local.copy(),
+            local,
         )
         self._points = FacePoints(
             np.zeros(n_faces, np.int32),
@@ -93,26 +125,15 @@ class SurfaceLevel:
         )
         self._n_used = 0
         self.n_input = n_vertices
-        self._dearest = 0.0
-        self._noise = (ROUNDING * float(np.ptp(heights[:, 0]))) ** 2
         self.n_vertices = n_vertices
-        self._ids = np.arange(n_vertices, dtype=np.int32)
-        self._vertex_lives = np.ones(n_vertices, dtype=bool)
-        self._face_lives = np.ones(n_faces, dtype=bool)
-        self._locked = locked
-        self._stays = locked | ~has_one_fan
-        self._integrals = np.ones(n_vertices)
-        self._cost = np.full(n_vertices, -np.inf)
-        self._key = _scattered(n_vertices)
-        self._target = np.full(n_vertices, -1, dtype=np.int32)
-        self._is_stale = np.ones(n_vertices, dtype=bool)
-        self._is_new = np.ones(n_vertices, dtype=bool)
-        self._has_moved = np.zeros(n_vertices, dtype=bool)
-        self._z_changed = np.zeros(n_vertices, dtype=bool)
-        self._face_changed = np.zeros(n_faces, dtype=bool)
-        self._squared = np.zeros(n_faces)
-        self._squared_z = np.zeros(n_faces if n_channels > 1 else 0)
-        self._largest_z = np.zeros(n_faces)
+        self._height_step = HEIGHT_STEP * float(np.abs(heights).max())
+        self._least_limit = (NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))) ** 2
+        self._cost_limit = 0.0
+        self._vertices = VertexState.of_input(locked, locked | (n_fans != 1))
+        self._faces = FaceState.of_input(n_faces, n_channels)
+        self._outline = tolerant_outline(
+            outline_tolerance, self._surface.x, self._surface.y, self._mesh, n_fans
+        )
         n_corners, n_stars = (3 * n_faces, n_vertices) if with_update else (0, 0)
         self._moments = Moments(
             np.zeros((n_corners, n_channels), np.float32),
@@ -125,68 +146,91 @@ class SurfaceLevel:
     @property
     def ids(self) -> NDArray[np.int32]:
         """Ids, in the input, of the vertices of the level."""
-        return self._ids[self._vertex_lives]
+        return self._vertices.ids[self._vertices.lives]
 
     @property
     def heights(self) -> FloatArray:
         """Present heights and weighted attributes, one row a vertex of the level."""
-        return self._surface.z[self._vertex_lives]
+        return self._surface.z[self._vertices.lives] + self._z_origin
 
     def costs(self, slots: NDArray[np.int32]) -> FloatArray:
         """Return the costs of vertices, as last ranked."""
-        return self._cost[slots]
+        return self._vertices.cost[slots]
 
     def squared_errors(self) -> float:
         """Return the sum of the squared height errors of all input vertices."""
-        of_faces = self._squared_z if len(self._squared_z) else self._squared
-        return float(of_faces[self._face_lives].sum() + (self._own_errors() ** 2).sum())
+        faces = self._faces
+        of_faces = faces.squared_z if len(faces.squared_z) else faces.squared
+        return float(of_faces[faces.lives].sum() + (self._own_errors() ** 2).sum())
 
     def largest_error(self) -> float:
         """Return the largest height error of all input vertices."""
-        of_faces = self._largest_z[self._face_lives].max(initial=0.0)
+        of_faces = self._faces.largest_z[self._faces.lives].max(initial=0.0)
         return max(float(np.sqrt(of_faces)), float(np.abs(self._own_errors()).max(initial=0.0)))
 
     def _own_errors(self) -> FloatArray:
         difference = self._surface.z[:, 0] - self._surface.measured[:, 0]
-        return difference[self._vertex_lives]
+        return difference[self._vertices.lives]
 
     # -- which vertices go -----------------------------------------------------------------------
 
     def rank(self, norm: str, tolerance: float, cutoff: float) -> None:
         """Bring the costs up to date that may be at most ``cutoff``."""
-        may_matter = (self._cost <= cutoff) | (self._cost == np.inf)
-        todo = np.flatnonzero(self._is_stale & self._vertex_lives & may_matter)
-        todo = todo.astype(np.int32)
+        vertices = self._vertices
+        may_matter = (vertices.cost <= cutoff) | (vertices.cost == np.inf)
+        todo = np.flatnonzero(vertices.is_stale & vertices.lives & may_matter).astype(np.int32)
+        limits = Limits(
+            LARGEST if norm == "max" else LEAST_SQUARES,
+            float(tolerance) ** 2,
+            float(cutoff),
+            self._height_step,
+        )
         run_in_ranges(
-            collapse_costs, len(todo), todo, self._mesh, self._surface, self._points, self._stays,
-            self._locked, self._squared, self._moments, self._integrals,
-            LARGEST if norm == "max" else LEAST_SQUARES, tolerance**2, cutoff, self._cost,
-            self._target, self._is_stale, self._is_new,
+            collapse_costs, len(todo), todo, self._mesh, self._surface, self._points, self._moments,
+            vertices, self._faces.squared, self._outline, limits,
         )  # fmt: skip
 
-    def candidates(
-        self, fraction: float, cutoff: float, cost_ratio: float = np.inf
-    ) -> NDArray[np.int32]:
-        """Return the slots of the vertices that may be odd: the cheapest ``fraction`` at most.
+    def _known(self, cutoff: float) -> tuple[NDArray[np.int32], FloatArray]:
+        """Return the slots that may go at no more than ``cutoff``, and their costs."""
+        vertices = self._vertices
+        is_known = vertices.lives & ~vertices.is_stale & (vertices.cost <= cutoff)
+        slots = np.flatnonzero(is_known & np.isfinite(vertices.cost)).astype(np.int32)
+        return slots, vertices.cost[slots]
 
-        None of them costs more than ``cost_ratio`` times what the cheapest part of those
+    def free(self, cutoff: float) -> NDArray[np.int32]:
+        """Return the slots of the vertices that may go at no cost but rounding."""
+        slots, cost = self._known(cutoff)
+        return slots[cost <= 0.0]
+
+    def candidates(
+        self,
+        fraction: float,
+        cutoff: float,
+        cost_ratio: float = np.inf,
+        besides_free: bool = False,
+    ) -> NDArray[np.int32]:
+        """Return the slots of the vertices that may be odd, the cheapest ones.
+
+        They are ``fraction`` of the vertices at most, or all that cost nothing if those are more;
+        with ``besides_free``, all that cost nothing and that share of the others. None of them
+        costs more than ``cost_ratio`` times what the cheapest part of those
         (1 / CHEAPEST_SHARE) does, or than what a level before was allowed to take.
         """
-        known = (
-            self._vertex_lives & ~self._is_stale & (self._cost <= cutoff) & np.isfinite(self._cost)
-        )
-        slots = np.flatnonzero(known).astype(np.int32)
-        cost = self._cost[slots]
-        n_most = max(int(fraction * self.n_vertices), 1)
+        slots, cost = self._known(cutoff)
+        n_free = int(np.count_nonzero(cost <= 0.0))
+        if besides_free:
+            n_most = n_free + max(int(fraction * (self.n_vertices - n_free)), 1)
+        else:
+            n_most = max(int(fraction * self.n_vertices), n_free, 1)
         n_cheapest = max(n_most // CHEAPEST_SHARE, 1)
         if len(slots) < n_cheapest:
             return slots
         places = [n_cheapest - 1, min(n_most, len(slots)) - 1]
-        cheap, dear = np.partition(cost, places)[places]
+        low, high = np.partition(cost, places)[places]
         if cost_ratio < np.inf:
-            self._dearest = max(cost_ratio * cheap, self._noise, self._dearest)
-            dear = min(dear, self._dearest)
-        return slots[cost <= dear]
+            self._cost_limit = max(cost_ratio * low, self._least_limit, self._cost_limit)
+            high = min(high, self._cost_limit)
+        return slots[cost <= high]
 
     def independent(
         self, slots: NDArray[np.int32], max_odd: int, budget: float
@@ -197,43 +241,61 @@ class SurfaceLevel:
         apart by a number scattered over the vertices, so that flat terrain is not thinned in
         rows. At most ``max_odd`` go, whose costs sum to at most ``budget``.
         """
-        state = np.zeros(len(self._ids), dtype=np.int8)
+        cost, key = self._vertices.cost, self._vertices.key
+        state = np.zeros(len(cost), dtype=np.int8)
         state[slots] = CANDIDATE
         active = slots
         while len(active):
             wins = np.empty(len(active), dtype=bool)
-            arguments = (active, self._mesh, state, self._cost, self._key, wins)
+            arguments = (active, self._mesh, state, cost, key, wins)
             run_in_ranges(find_cheapest, len(active), *arguments)
             run_in_ranges(take_cheapest, len(active), active, wins, self._mesh, state)
             active = active[state[active] == CANDIDATE]
         odd = slots[state[slots] == TAKEN]
         if len(odd) <= max_odd and budget == np.inf:
             return odd
-        odd = odd[np.lexsort((self._key[odd], self._cost[odd]))][:max_odd]
-        spent = np.maximum.accumulate(np.cumsum(self._cost[odd]))
+        odd = odd[np.lexsort((key[odd], cost[odd]))][:max_odd]
+        spent = np.maximum.accumulate(np.cumsum(cost[odd]))
         n_affordable = np.searchsorted(spent, budget, side="right")
         return np.sort(odd[:n_affordable])
 
+    def linked(self, odd: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Return those vertices whose collapse meets the link condition on the present mesh.
+
+        The cost of the others was worked out before edges elsewhere came to join their rings; they
+        are ranked anew. Whatever part of the result is removed, at least one vertex goes.
+        """
+        is_linked = np.empty(len(odd), dtype=bool)
+        target = self._vertices.target[odd]
+        run_in_ranges(check_links, len(odd), odd, target, self._mesh, is_linked)
+        self._rank_anew(odd[~is_linked])
+        return odd[is_linked]
+
+    def _rank_anew(self, slots: NDArray[np.int32]) -> None:
+        vertices = self._vertices
+        vertices.cost[slots] = np.inf  # looked at whatever the cutoff
+        vertices.is_stale[slots] = vertices.is_new[slots] = True
+
     # -- one step --------------------------------------------------------------------------------
 
-    def remove(self, odd: NDArray[np.int32]) -> Step:
+    def remove(self, odd: NDArray[np.int32]) -> CollapseStep:
         """Collapse the odd vertices, predict, update; return the step, details as weighted."""
         odd, indptr, ring, ring_faces = self._collapse(odd)
         corners, weights, details = self._hand_over(odd, indptr, ring, ring_faces)
-        stays = self._vertex_lives
-        even_position = np.cumsum(stays, dtype=np.int32) - np.int32(1)
-        fine = stays.copy()
+        vertices = self._vertices
+        even_position = np.cumsum(vertices.lives, dtype=np.int32) - np.int32(1)
+        fine = vertices.lives.copy()
         fine[odd] = True
         fine_position = np.cumsum(fine, dtype=np.int32) - np.int32(1)
         row_indptr, columns, row_weights = self._support(corners, weights, indptr, ring)
         self.n_vertices -= len(odd)
         if self._with_update:
             update_heights(
-                odd, row_indptr, columns, row_weights, details, self._locked, self._integrals,
-                self._surface.z, self._z_changed,
+                odd, row_indptr, columns, row_weights, details, vertices.locked,
+                vertices.integrals, self._surface.z, vertices.z_changed,
             )  # fmt: skip
         self._bring_sums_up_to_date()
-        step = Step(
+        step = CollapseStep(
             frozen(fine_position[odd]),
             frozen(fine_position[ring[indptr[:-1]]]),
             frozen(row_indptr),
@@ -248,22 +310,24 @@ class SurfaceLevel:
         self, odd: NDArray[np.int32]
     ) -> tuple[NDArray[np.int32], NDArray[np.int64], NDArray[np.int32], NDArray[np.int32]]:
         """Collapse on the mesh; return the odd vertices that went and their rings in CSR."""
+        vertices = self._vertices
         size = np.empty(len(odd), dtype=np.int64)
         run_in_ranges(measure_rings, len(odd), odd, self._mesh, size)
         indptr = _starts(size)
         ring = np.empty(indptr[-1], dtype=np.int32)
         ring_faces = np.empty(indptr[-1], dtype=np.int32)
-        target = self._target[odd]
-        arguments = (odd, target, self._mesh, indptr, ring, ring_faces)
+        arguments = (odd, vertices.target[odd], self._mesh, indptr, ring, ring_faces)
         run_in_ranges(record_rings, len(odd), *arguments)
         goes = np.empty(len(odd), dtype=bool)
-        stamp = np.zeros(len(self._ids), dtype=np.int32)
-        lives = (self._vertex_lives, self._face_lives)
-        collapse_all(odd, indptr, ring, ring_faces, self._mesh, *lives, stamp, goes)
-        renew_outgoing(self._mesh, self._face_lives)
+        collapse_all(
+            odd, indptr, ring, ring_faces, self._mesh, vertices.lives, self._faces.lives, goes
+        )
+        renew_outgoing(self._mesh, self._faces.lives)
+        if len(self._outline.lives):
+            self._outline.lives[vertices.ids[odd[goes]]] = False
         if goes.all():
             return odd, indptr, ring, ring_faces
-        self._cost[odd[~goes]] = np.inf  # until its star changes
+        self._rank_anew(odd[~goes])
         kept = np.repeat(goes, size)
         return odd[goes], _starts(size[goes]), ring[kept], ring_faces[kept]
 
@@ -286,7 +350,7 @@ class SurfaceLevel:
         details = np.empty((len(odd), self._surface.z.shape[1]))
         run_in_ranges(
             hand_over, len(odd), odd, indptr, ring, ring_faces, self._surface, self._points, first,
-            self._face_changed, corners, weights, details,
+            self._faces.changed, self._outline.squared_tolerance, corners, weights, details,
         )  # fmt: skip
         return corners, weights, details
 
@@ -301,14 +365,14 @@ class SurfaceLevel:
         n_odd = len(corners)
         row_indptr = np.arange(0, 3 * n_odd + 1, 3, dtype=np.int64)
         columns, row_weights = corners.ravel(), weights.ravel()
-        stuck = np.flatnonzero(self._locked[corners].all(axis=1))
+        stuck = np.flatnonzero(self._vertices.locked[corners].all(axis=1))
         if len(stuck) == 0:
             return row_indptr, columns, row_weights
         counts = np.full(n_odd, 3, dtype=np.int64)
         extra = []
         for row in stuck:
             around = ring[indptr[row] : indptr[row + 1]]
-            extra.append(around[~self._locked[around]])
+            extra.append(around[~self._vertices.locked[around]])
             counts[row] += len(extra[-1])
         where = np.repeat(3 * (stuck + 1), counts[stuck] - 3)
         columns = np.insert(columns, where, np.concatenate(extra))
@@ -316,16 +380,15 @@ class SurfaceLevel:
 
     def _bring_sums_up_to_date(self) -> None:
         """Sum the errors anew where faces or heights changed; mark the costs that depend on it."""
+        vertices, faces = self._vertices, self._faces
         run_in_ranges(
-            sum_over_faces, len(self._face_lives), self._mesh, self._face_lives,
-            self._face_changed, self._z_changed, self._surface, self._points, self._squared,
-            self._squared_z, self._largest_z, self._moments, self._is_stale, self._is_new,
-            self._has_moved,
+            sum_over_faces, len(faces.lives), self._mesh, self._surface, self._points, vertices,
+            faces, self._moments,
         )  # fmt: skip
-        self._z_changed[:] = False
+        vertices.z_changed[:] = False
         if self._with_update:
             run_in_ranges(
-                sum_over_stars, len(self._ids), self._mesh, self._vertex_lives, self._has_moved,
+                sum_over_stars, len(vertices.ids), self._mesh, vertices.lives, vertices.has_moved,
                 self._surface, self._moments,
             )  # fmt: skip
 
@@ -349,12 +412,12 @@ class SurfaceLevel:
 
     def _pack(self) -> None:
         """Close the gaps once there are many."""
-        if self.n_vertices > PACKED_SHARE * len(self._ids):
+        if self.n_vertices > PACKED_SHARE * len(self._vertices.ids):
             return
-        vertices, faces = np.flatnonzero(self._vertex_lives), np.flatnonzero(self._face_lives)
-        position = np.full(len(self._ids), -1, dtype=np.int32)
+        vertices, faces = np.flatnonzero(self._vertices.lives), np.flatnonzero(self._faces.lives)
+        position = np.full(len(self._vertices.ids), -1, dtype=np.int32)
         position[vertices] = np.arange(len(vertices), dtype=np.int32)
-        face_position = np.full(len(self._face_lives), -1, dtype=np.int32)
+        face_position = np.full(len(self._faces.lives), -1, dtype=np.int32)
         face_position[faces] = np.arange(len(faces), dtype=np.int32)
 
         packed = HalfEdges(
@@ -369,13 +432,10 @@ class SurfaceLevel:
         self._points = self._points._replace(
             start=self._points.start[faces], n_points=self._points.n_points[faces]
         )
-        self._target = position[self._target[vertices]]
-        for name in _OF_VERTICES:
-            setattr(self, name, getattr(self, name)[vertices])
-        for name in _OF_FACES:
-            setattr(self, name, getattr(self, name)[faces])
-        if len(self._squared_z):
-            self._squared_z = self._squared_z[faces]
+        self._vertices = self._vertices.packed(vertices, position)
+        self._faces = self._faces.packed(faces)
+        if len(self._outline.ids):
+            self._outline = self._outline._replace(ids=self._vertices.ids)
         if self._with_update:
             n_channels = self._moments.slope.shape[1]
             self._moments = Moments(
@@ -388,11 +448,11 @@ class SurfaceLevel:
     def snapshot(self) -> SurfaceLevel:
         """Return a copy to go back to; points already in place are never overwritten."""
         twin = copy.copy(self)
-        for name, value in vars(self).items():
-            if isinstance(value, np.ndarray):
-                setattr(twin, name, value.copy())
+        twin._vertices = self._vertices.copied()
+        twin._faces = self._faces.copied()
+        twin._outline = self._outline._replace(lives=self._outline.lives.copy())
         twin._mesh = HalfEdges(*(array.copy() for array in self._mesh))
-        twin._moments = copy.deepcopy(self._moments)
+        twin._moments = Moments._make(array.copy() for array in self._moments)
         twin._surface = self._surface._replace(z=self._surface.z.copy())
         twin._points = self._points._replace(
             start=self._points.start.copy(), n_points=self._points.n_points.copy()
@@ -400,15 +460,8 @@ class SurfaceLevel:
         return twin
 
 
-_OF_VERTICES = (
-    "_ids", "_vertex_lives", "_locked", "_stays", "_integrals", "_cost", "_key", "_is_stale",
-    "_is_new", "_has_moved", "_z_changed",
-)  # fmt: skip
-_OF_FACES = ("_face_lives", "_face_changed", "_squared", "_largest_z")
-
-
-def _half_edges(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges, NDArray[np.bool_]]:
-    """Return the half-edge mesh, and which vertices have one fan of faces around them."""
+def _half_edges(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges, NDArray[np.int8]]:
+    """Return the half-edge mesh, and how many fans of faces are around each vertex (0, 1, 2)."""
     indptr = np.zeros(n_vertices + 1, dtype=np.int64)
     star = np.empty(3 * len(faces), dtype=np.int32)
     fill_stars(faces, indptr, star)
@@ -420,13 +473,7 @@ def _half_edges(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges, N
     run_in_ranges(find_twins, len(faces), indptr, star, mesh)
     n_fans = np.empty(n_vertices, dtype=np.int8)
     run_in_ranges(find_outgoing, n_vertices, indptr, star, mesh, n_fans)
-    return mesh, n_fans == 1
-
-
-def _scattered(n_vertices: int) -> NDArray[np.uint32]:
-    """Return a different number for each vertex, without order (a Weyl sequence, mixed)."""
-    key = np.arange(n_vertices, dtype=np.uint32) * np.uint32(2654435761)
-    return (key ^ (key >> np.uint32(15))) * np.uint32(2246822519)
+    return mesh, n_fans
 
 
 def _starts(counts: NDArray) -> NDArray[np.int64]:

@@ -1,5 +1,4 @@
-"""The command line ``terrain-wavelets``: arguments, messages, progress on a terminal."""
+"""The command line ``terrain-wavelets``: arguments, messages, progress on a terminal.
 
-from .main import main
-
-__all__ = ["main"]
+Nothing is imported here: `wavelet_gis.cli.__main__` has to see to interrupts before it imports.
+"""

@@ -1,8 +1,22 @@
-"""``python -m wavelet_gis.cli``: the command, where its script is not installed."""
+"""The program: ``terrain-wavelets``, and ``python -m wavelet_gis.cli`` where it is not installed.
+
+Interrupts are seen to before anything else is imported, and until the process is gone.
+"""
+
+from __future__ import annotations
 
 import sys
 
-from .main import main
+from wavelet_gis.cli import interrupts
+
+
+def program() -> int:
+    """Run the command line and return its exit code."""
+    interrupts.quit_at_once()
+    from wavelet_gis.cli.main import main
+
+    return main()
+
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program())

@@ -7,13 +7,15 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from wavelet_gis._program import PROGRAM
 
-__all__ = ["Console"]
+if TYPE_CHECKING:  # the core takes a while to import, which a mistyped command need not wait for
+    from wavelet_core import Progress
+    from wavelet_gis.notes import Note
 
-Progress = Callable[[float], bool]
+__all__ = ["Console"]
 
 
 class Console:
@@ -25,11 +27,22 @@ class Console:
         Nothing but errors and, if asked for, figures.
     as_json : bool
         Figures as one JSON object on standard output instead of lines for people.
+    name_of : callable
+        From the name of a parameter to that of its flag.
     """
 
-    def __init__(self, *, quiet: bool = False, as_json: bool = False) -> None:
+    def __init__(
+        self,
+        *,
+        quiet: bool = False,
+        as_json: bool = False,
+        name_of: Callable[[str], str] = str,
+    ) -> None:
         self._quiet = quiet
         self._as_json = as_json
+        self._name_of = name_of
+        self._notes: list[Note] = []
+        self._n_told = 0
         self._held_warnings: list[str] = []
 
     def say(self, line: str) -> None:
@@ -38,9 +51,12 @@ class Console:
             print(line)
 
     def figures(self, values: Mapping[str, Any]) -> None:
-        """Print the figures of the command, if JSON was asked for."""
+        """Print the figures of the command and what was noted, if JSON was asked for."""
         if self._as_json:
-            print(json.dumps(_plain(values)))
+            noted = [note.to_dict(self._name_of) for note in self._notes]
+            # Those that a pyramid file holds come first; the figures have them already.
+            notes = [*values.get("notes", ()), *noted]
+            print(json.dumps(_plain({**values, "notes": notes})))
 
     def table(self, header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
         """Print a table with right-aligned columns."""
@@ -53,7 +69,7 @@ class Console:
     @contextmanager
     def progress(self, what: str) -> Iterator[Progress]:
         """Yield a function that takes a fraction and moves a bar, seen on a terminal only."""
-        self._show_warnings()
+        self._tell()
         if self._quiet or not sys.stderr.isatty():
             yield lambda fraction: True
             return
@@ -69,12 +85,16 @@ class Console:
             yield move
 
     @contextmanager
-    def one_line_warnings(self) -> Iterator[None]:
-        """Show each warning as one line on standard error; none when quiet.
+    def told_once(self) -> Iterator[None]:
+        """Tell what is noted and warned of in the block, each as one line; nothing when quiet.
 
-        They are held until the long work begins or the command is done: input that is refused
-        gets one line, which says what is wrong, and no others beside it.
+        Warnings go to standard error, other notes to standard output. They are held until the long
+        work begins or the command is done: input that is refused gets one line, which says what is
+        wrong, and no others beside it.
         """
+        from wavelet_core.errors import SlowFallbackWarning, UnstableDesignWarning
+        from wavelet_gis.errors import TerrainWarning
+        from wavelet_gis.notes import collected
 
         def show(
             message: Warning | str,
@@ -84,21 +104,25 @@ class Console:
             file: TextIO | None = None,
             line: str | None = None,
         ) -> None:
-            self._held_warnings.append(" ".join(str(message).split()))
+            is_ours = isinstance(message, TerrainWarning)
+            text = message.in_words(self._name_of) if is_ours else str(message)  # type: ignore[union-attr]
+            self._held_warnings.append(" ".join(text.split()))
 
-        with warnings.catch_warnings():
-            from wavelet_core.errors import SlowFallbackWarning
-            from wavelet_gis.errors import TerrainWarning
-
+        with warnings.catch_warnings(), collected() as self._notes:
             # What libraries warn of is for developers; ours is for the user, each once.
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", TerrainWarning)
+            warnings.simplefilter("always", UnstableDesignWarning)
             warnings.simplefilter("once", SlowFallbackWarning)
             warnings.showwarning = show
             yield
-        self._show_warnings()
+        self._tell()
 
-    def _show_warnings(self) -> None:
+    def _tell(self) -> None:
+        for note in self._notes[self._n_told :]:
+            if not note.is_warning:
+                self.say(note.in_words(self._name_of))
+        self._n_told = len(self._notes)
         if not self._quiet:
             for text in self._held_warnings:
                 print(f"{PROGRAM}: warning: {text}", file=sys.stderr)

@@ -1,8 +1,8 @@
 """The command ``terrain-wavelets``: argument parsing and messages only.
 
-Each command is a module of `wavelet_gis.cli.commands` with ``HELP``, ``add_arguments(parser)`` and
-``run(arguments, console)``. A module that is put there is a command; it imports what it needs when
-it runs, so that ``--help`` comes at once.
+Each command is a module of `wavelet_gis.cli.commands` with ``ORDER`` (its place in the list of
+commands), ``HELP``, ``add_arguments(parser)`` and ``run(arguments, console)``. A module that is put
+there is a command; it imports what it needs when it runs, so that ``--help`` comes at once.
 """
 
 from __future__ import annotations
@@ -13,36 +13,23 @@ import logging
 import os
 import pkgutil
 import re
-import signal
 import sqlite3
 import sys
 from collections.abc import Sequence
 from types import ModuleType
-from typing import Any
 
 from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
-from wavelet_gis.cli import commands
+from wavelet_gis.cli import commands, interrupts
 from wavelet_gis.cli.console import Console
+from wavelet_gis.cli.flags import flag_names
+from wavelet_gis.cli.table_help import TableHelp
 
 __all__ = ["main"]
 
-REFUSED, INTERRUPTED, TERMINATED = 1, 130, 143
+REFUSED = 1
 
 #: Set to see where an unforeseen error came from.
 DEBUG_VARIABLE = "TERRAIN_WAVELETS_DEBUG"
-
-#: The order in which help lists the commands; any other module follows.
-_ORDER = (
-    "analyse",
-    "info",
-    "extract",
-    "reconstruct",
-    "simplify",
-    "filter",
-    "details",
-    "cluster",
-    "report",
-)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -62,33 +49,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
         chosen = _parser().parse_args(arguments)
     except SystemExit as stop:  # argparse has said why
         return stop.code if isinstance(stop.code, int) else 2
-    console = Console(quiet=chosen.quiet, as_json=chosen.json)
+    console = Console(quiet=chosen.quiet, as_json=chosen.json, name_of=chosen.name_of)
     for library in ("laspy", "rasterio", "pyogrio"):
         # Their complaints come to us as exceptions; printed too they would be noise.
         logging.getLogger(library).addHandler(logging.NullHandler())
         logging.getLogger(library).propagate = False
-    previous = _stop_on_termination()
-    try:
+    with interrupts.Raised():
         return _run(chosen, console)
-    finally:
-        if previous is not None:
-            signal.signal(signal.SIGTERM, previous)
 
 
 def _run(chosen: argparse.Namespace, console: Console) -> int:
+    before = _state(chosen)
     try:
         from wavelet_core.errors import WaveletError
 
-        with console.one_line_warnings():
+        with console.told_once():
             chosen.run(chosen, console)
+        interrupts.ending()
         sys.stdout.flush()
         return 0
-    except KeyboardInterrupt:
-        _complain("interrupted; nothing was written")
-        return INTERRUPTED
-    except _Terminated:
-        _complain("terminated; nothing was written")
-        return TERMINATED
+    except (KeyboardInterrupt, interrupts.Terminated) as stop:
+        interrupts.ending()
+        return _stopped(stop, chosen, before)
     except BrokenPipeError:
         # The reader of our output has gone (`| head`); what is left to say has no taker.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -99,7 +81,7 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
         if os.environ.get(DEBUG_VARIABLE):
             raise
         if isinstance(error, WaveletError):
-            _complain(str(error))
+            _complain(error.in_words(chosen.name_of))
         elif isinstance(error, OSError | sqlite3.Error):
             _complain(f"the operating system refused: {error}; is the disk full?")
         else:
@@ -110,18 +92,27 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
     return REFUSED
 
 
-class _Terminated(BaseException):
-    """SIGTERM came; unwinds so that scratch files go."""
+def _stopped(stop: BaseException, chosen: argparse.Namespace, before: _State) -> int:
+    """Say that a signal came; one that comes when the output is in place has come too late."""
+    is_interrupt = isinstance(stop, KeyboardInterrupt)
+    word = "interrupted" if is_interrupt else "terminated"
+    if _state(chosen) != before:
+        print(f"{PROGRAM}: {word} after {chosen.output} was written", file=sys.stderr)
+        return 0
+    _complain(f"{word}; nothing was written")
+    return interrupts.INTERRUPTED if is_interrupt else interrupts.TERMINATED
 
 
-def _stop_on_termination() -> Any:
-    def stop(signal_number: int, frame: object) -> None:
-        raise _Terminated
+#: Which file is at the output's path: none, or its inode and time of change.
+_State = tuple[int, int] | None
 
+
+def _state(chosen: argparse.Namespace) -> _State:
     try:
-        return signal.signal(signal.SIGTERM, stop)
-    except ValueError:  # not the main thread, where signals never come
+        found = os.stat(chosen.output)
+    except (AttributeError, OSError, ValueError):  # a command without output, or nothing there yet
         return None
+    return found.st_ino, found.st_mtime_ns
 
 
 def _complain(message: str) -> None:
@@ -138,25 +129,29 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {_version()}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
-    for name in _command_names():
-        module = importlib.import_module(f"{commands.__name__}.{name}")
-        _add_command(subparsers, name, module)
+    parsers = [_add_command(subparsers, name, module) for name, module in _commands()]
+    for one in parsers:
+        one.set_defaults(name_of=flag_names(one, parsers))
     return parser
 
 
 def _add_command(
     subparsers: argparse._SubParsersAction[argparse.ArgumentParser], name: str, module: ModuleType
-) -> None:
-    parser = subparsers.add_parser(name, help=module.HELP, description=module.HELP)
+) -> argparse.ArgumentParser:
+    parser = subparsers.add_parser(
+        name, help=module.HELP, description=module.HELP, formatter_class=TableHelp
+    )
     module.add_arguments(parser)
     parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
     parser.set_defaults(run=module.run)
+    return parser
 
 
-def _command_names() -> list[str]:
+def _commands() -> list[tuple[str, ModuleType]]:
     names = [m.name for m in pkgutil.iter_modules(commands.__path__) if m.name[0] != "_"]
-    return sorted(names, key=lambda name: (_ORDER.index(name) if name in _ORDER else 99, name))
+    found = [(name, importlib.import_module(f"{commands.__name__}.{name}")) for name in names]
+    return sorted(found, key=lambda command: command[1].ORDER)
 
 
 def _version() -> str:

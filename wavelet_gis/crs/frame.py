@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_gis._fields import Fields
 from wavelet_gis.errors import CrsError
 
 __all__ = [
@@ -96,25 +97,17 @@ class CoordinateSystem:
         CrsError
             When a field is missing, of another type or not finite.
         """
-        try:
-            unit = fields["vertical_unit"]
-            system = cls(
-                wkt=None if fields["wkt"] is None else str(fields["wkt"]),
-                name=str(fields["name"]),
-                kind=fields["kind"],
-                horizontal_unit=float(fields["horizontal_unit"]),
-                vertical_unit=None if unit is None else vertical_unit_name(str(unit)),
-                semi_major=float(fields["semi_major"]),
-                inverse_flattening=float(fields["inverse_flattening"]),
-            )
-        except (KeyError, TypeError, ValueError) as error:
-            raise CrsError(f"the stored CRS is damaged ({error}); write the file anew.") from error
-        numbers = (system.horizontal_unit, system.semi_major, system.inverse_flattening)
-        if system.kind not in ("geographic", "projected", "unknown") or not all(
-            math.isfinite(number) for number in numbers
-        ):
-            raise CrsError("the stored CRS is damaged (kind or numbers); write the file anew.")
-        return system
+        stored = Fields(fields, "the CRS", CrsError)
+        unit = stored.text_or_none("vertical_unit")
+        return cls(
+            wkt=stored.text_or_none("wkt"),
+            name=stored.text("name"),
+            kind=stored.choice("kind", get_args(Kind)),  # type: ignore[arg-type]
+            horizontal_unit=stored.number("horizontal_unit"),
+            vertical_unit=None if unit is None else vertical_unit_name(unit),
+            semi_major=stored.number("semi_major"),
+            inverse_flattening=stored.number("inverse_flattening"),
+        )
 
 
 class Georeference(NamedTuple):
@@ -126,11 +119,14 @@ class Georeference(NamedTuple):
         Name of the unit of z where the file tells it outside the CRS.
     fault : str
         What is wrong with the file's CRS, where it has one that cannot be used.
+    notes : tuple of str
+        What is odd about it where it can be used.
     """
 
     wkt: str | None = None
     vertical_unit: str | None = None
     fault: str = ""
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,17 +213,11 @@ class LocalFrame:
         CrsError
             When a field is missing, no number, or a scale is not positive and finite.
         """
-        try:
-            frame = cls(**{name: float(value) for name, value in fields.items()})
-        except (TypeError, ValueError) as error:
-            raise CrsError(
-                f"the stored frame is damaged ({error}); write the file anew."
-            ) from error
-        scales = (frame.x_scale, frame.y_scale, frame.z_scale)
-        origins = (frame.x_origin, frame.y_origin)
-        if not all(math.isfinite(s) and s > 0 for s in scales) or not all(
-            math.isfinite(o) for o in origins
-        ):
+        stored = Fields(fields, "the working frame", CrsError)
+        if unknown := stored.keys() - asdict(cls()).keys():
+            raise stored.fault(f"{min(unknown)} is no part of one")
+        frame = cls(**{name: stored.number(name) for name in asdict(cls())})
+        if min(frame.x_scale, frame.y_scale, frame.z_scale) <= 0:
             raise CrsError("the stored frame has a scale that is no length; write the file anew.")
         return frame
 
@@ -340,8 +330,13 @@ def _check_span(degrees: NDArray[np.float64]) -> None:
         raise CrsError("the extent is not finite; check the georeference of the input.")
     if max(abs(south), abs(north)) > 90.0 + 1e-6 or max(abs(west), abs(east)) > 540.0:
         raise CrsError(
-            f"the CRS is geographic but x runs from {west:g} to {east:g} and y from {south:g} to "
-            f"{north:g}, which are no degrees; give the right CRS with --crs."
+            "the CRS is geographic but x runs from {west:g} to {east:g} and y from {south:g} to "
+            "{north:g}, which are no degrees; give the right CRS with {0}.",
+            "crs",
+            west=west,
+            east=east,
+            south=south,
+            north=north,
         )
     distortion = _distortion(south, north)
     span = max(east - west, north - south)

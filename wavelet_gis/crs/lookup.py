@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wavelet_gis.crs.frame import CoordinateSystem, Kind, vertical_unit_name
+from wavelet_gis.crs.frame import VERTICAL_UNITS, CoordinateSystem, Kind, vertical_unit_name
 from wavelet_gis.errors import CrsError
 
 if TYPE_CHECKING:
@@ -95,6 +95,9 @@ def _vertical_unit(crs: CRS) -> str | None:
     source = crs.source_crs if crs.is_bound and crs.source_crs is not None else crs
     for axis in source.axis_info:
         if axis.direction.lower() == "up":
+            for name, metres in VERTICAL_UNITS.items():  # the factor tells more than the name
+                if abs(axis.unit_conversion_factor - metres) < 1e-9:
+                    return name
             try:
                 return vertical_unit_name(axis.unit_name)
             except CrsError:

@@ -14,6 +14,8 @@ from wavelet_gis.errors import OutputFileError
 
 __all__ = ["check_output", "new_file"]
 
+_EXISTS = "{path}: this file exists; give another name, or {0} to replace it."
+
 
 def check_output(
     path: str | os.PathLike[str],
@@ -57,9 +59,7 @@ def check_output(
                 f"{target}: the output is the input itself; give it another name."
             )
     if target.exists() and not overwrite:
-        raise OutputFileError(
-            f"{target}: this file exists; give another name or allow --overwrite."
-        )
+        raise OutputFileError(_EXISTS, "overwrite", path=target)
     if not target.parent.is_dir():
         raise OutputFileError(f"{target.parent}: there is no such folder; create it first.")
     # Asking the file system is the only test that holds for root, for read-only mounts and
@@ -97,9 +97,7 @@ def new_file(path: str | os.PathLike[str], *, overwrite: bool = False) -> Iterat
         for made in [*companions, scratch]:
             final = target.parent / made.name
             if final.exists() and not overwrite:
-                raise OutputFileError(
-                    f"{final}: this file exists; give another name or allow --overwrite."
-                )
+                raise OutputFileError(_EXISTS, "overwrite", path=final)
         for made in [*companions, scratch]:
             os.replace(made, target.parent / made.name)
 

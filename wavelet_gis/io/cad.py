@@ -55,7 +55,7 @@ def write_glb(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
         import trimesh
     except ImportError as error:
         raise MissingDependencyError(
-            "GLB is written by trimesh, which is not installed; 'pip install trimesh' mends it."
+            "GLB is written by trimesh, which is not installed; run 'pip install trimesh'."
         ) from error
     origin = _local_origin(mesh)
     local = trimesh.Trimesh(mesh.vertices - origin, mesh.faces, process=False)
@@ -115,7 +115,7 @@ def write_dxf(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
         import ezdxf
     except ImportError as error:
         raise MissingDependencyError(
-            "DXF is written by ezdxf, which is not installed; 'pip install ezdxf' mends it."
+            "DXF is written by ezdxf, which is not installed; run 'pip install ezdxf'."
         ) from error
     document = ezdxf.filemanagement.new("R2010")
     document.layers.add("TERRAIN")

@@ -6,21 +6,22 @@ and it adds non-spatial tables and the styles that QGIS looks for.
 
 from __future__ import annotations
 
+import itertools
 import os
 import sqlite3
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from urllib.parse import quote
 
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, OutputFileError
 
 __all__ = [
     "LayerStyle",
     "create_geopackage",
     "open_for_writing",
     "open_stranger",
+    "ordinary_columns",
     "register_attributes_table",
     "table_names",
     "write_styles",
@@ -31,7 +32,45 @@ USER_VERSION = 10200
 APPLICATION_ID = 0x47504B47
 
 #: Longest value accepted from a file of unknown origin; ours are smaller.
-MAX_VALUE_BYTES = 64 << 20
+MAX_VALUE_BYTES = 16 << 20
+
+#: Longest statement in its schema; SQLite's own limit would take a gigabyte.
+MAX_SQL_BYTES = 1 << 20
+
+#: Instructions of SQLite's virtual machine for one file, in all. A pyramid of a hundred million
+#: points takes some hundred thousand; a statement that never ends is ended.
+MAX_INSTRUCTIONS = 50_000_000
+
+#: The same for reading the schema, some eight steps a table; ours have a few hundred. SQLite 3.40
+#: takes minutes to read one of 300,000 tables, in a file of 16 MB.
+MAX_SCHEMA_INSTRUCTIONS = 200_000
+
+#: Seconds to wait for another program that writes the file just now.
+PATIENCE_SECONDS = 2.0
+
+#: What SQLite's error codes mean to a user, by their first word, and how to mend it.
+_FAULTS = {
+    "BUSY": "another program holds the file locked",
+    "LOCKED": "another program holds the file locked",
+    "PROTOCOL": "another program holds the file locked",
+    "READONLY": "the file, or the folder that it is in, may only be read",
+    "PERM": "the system denies access to the file",
+    "CANTOPEN": "the system does not open the file, or those of SQLite beside it",
+    "IOERR": "the disk, or the network that it is on, failed",
+    "FULL": "the disk is full",
+    "NOMEM": "there is not enough memory",
+}
+_REMEDIES = {
+    "BUSY": "close it there, or wait until it is done",
+    "LOCKED": "close it there, or wait until it is done",
+    "PROTOCOL": "close it there, or wait until it is done",
+    "READONLY": "change the permissions, or copy it elsewhere",
+    "PERM": "change the permissions, or copy it elsewhere",
+    "CANTOPEN": "check the permissions of file and folder",
+    "IOERR": "check the disk, or copy the file to another",
+    "FULL": "make room and try again",
+    "NOMEM": "close other programs and try again",
+}
 
 _WGS84 = (
     'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563,'
@@ -90,53 +129,149 @@ def open_for_writing(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connectio
     """Yield a connection to a file that nobody else knows yet, committed when the block ends.
 
     There is no journal: a file that fails half-way is a scratch file and is thrown away.
+
+    Raises
+    ------
+    OutputFileError
+        When SQLite cannot write: what hinders it, and how to mend that.
     """
-    connection = sqlite3.connect(os.fspath(path))
+    name = os.path.abspath(path)  # ":memory:" is the name of a file here
     try:
-        connection.execute("PRAGMA journal_mode = OFF")
-        connection.execute("PRAGMA synchronous = OFF")
-        yield connection
-        connection.commit()
-    finally:
-        connection.close()
+        connection = sqlite3.connect(name)
+        try:
+            connection.execute("PRAGMA journal_mode = OFF")
+            connection.execute("PRAGMA synchronous = OFF")
+            yield connection
+            connection.commit()
+        finally:
+            connection.close()
+    except sqlite3.Error as error:
+        words = (
+            _system_fault(error)
+            or f"SQLite refuses to write it ({_short(error)}); please report this"
+        )
+        raise OutputFileError(f"{name}: {words}.") from error
 
 
 @contextmanager
-def open_stranger(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connection]:
+def open_stranger(
+    path: str | os.PathLike[str], *, max_instructions: int | None = MAX_INSTRUCTIONS
+) -> Iterator[sqlite3.Connection]:
     """Yield a read-only connection to a GeoPackage of unknown origin.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    max_instructions : int, optional
+        How much SQLite may do for it, in steps of its virtual machine; None for a file that this
+        process has written, all of whose rows may be looked at.
 
     Raises
     ------
     InputFileError
-        When the file is missing or no SQLite database.
+        When the file is missing, held by another program or no SQLite database, or asks for more
+        work than any pyramid file needs.
     """
     name = os.fspath(path)
     if os.path.isdir(name):
         raise InputFileError(f"{name}: this is a folder; name the pyramid file in it.")
     if not os.path.exists(name):
         raise InputFileError(f"{name}: there is no such file; check the path.")
-    uri = "file:" + quote(str(Path(name).absolute())) + "?mode=ro"
-    connection = sqlite3.connect(uri, uri=True)
+    if not os.path.isfile(name):
+        raise InputFileError(f"{name}: this is a pipe or a device; give a pyramid file.")
+    uri = Path(name).absolute().as_uri() + "?mode=ro"
     try:
-        # Views, triggers and functions in the schema of a stranger must not run.
-        connection.execute("PRAGMA trusted_schema = OFF")
-        connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_VALUE_BYTES)
-        connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
-        yield connection
+        connection = sqlite3.connect(uri, uri=True, timeout=PATIENCE_SECONDS)
+        try:
+            _guard(connection)
+            _bound(connection, MAX_SCHEMA_INSTRUCTIONS, looks_every=1000)
+            connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()
+            _bound(connection, max_instructions, looks_every=100_000)
+            yield connection
+        finally:
+            connection.close()
     # A damaged schema may hold text that is none.
     except (sqlite3.Error, UnicodeError) as error:
-        raise InputFileError(
-            f"{name}: this is no GeoPackage, or a damaged one ({error}); give a pyramid file that "
-            "'terrain-wavelets analyse' wrote."
-        ) from error
-    finally:
-        connection.close()
+        raise InputFileError(f"{name}: {_reading_fault(name, error)}.") from error
+
+
+def _guard(connection: sqlite3.Connection) -> None:
+    """Bound what a stranger's file can make SQLite do."""
+    # Views, triggers and functions in the schema of a stranger must not run.
+    connection.execute("PRAGMA trusted_schema = OFF")
+    connection.execute("PRAGMA query_only = ON")
+    connection.execute("PRAGMA cell_size_check = ON")
+    connection.execute("PRAGMA mmap_size = 0")  # a file cut short meanwhile would kill the process
+    connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_VALUE_BYTES)
+    connection.setlimit(sqlite3.SQLITE_LIMIT_SQL_LENGTH, MAX_SQL_BYTES)
+    connection.setlimit(sqlite3.SQLITE_LIMIT_ATTACHED, 0)
+
+
+def _bound(
+    connection: sqlite3.Connection, max_instructions: int | None, *, looks_every: int
+) -> None:
+    """End a statement after so many more steps of SQLite's virtual machine."""
+    if max_instructions is None:
+        connection.set_progress_handler(None, 0)
+        return
+    looks, most = itertools.count(1), max_instructions // looks_every
+    connection.set_progress_handler(lambda: next(looks) > most, looks_every)
+
+
+def _system_fault(error: Exception) -> str | None:
+    """Return what hinders the system, and the remedy; None where the file itself is at fault."""
+    code = getattr(error, "sqlite_errorname", "SQLITE_")
+    if code in ("SQLITE_IOERR_SHORT_READ", "SQLITE_IOERR_CORRUPTFS"):
+        return None
+    word = code.split("_")[1]
+    return f"{_FAULTS[word]} ({_short(error)}); {_REMEDIES[word]}" if word in _FAULTS else None
+
+
+def _short(error: Exception) -> str:
+    """Return SQLite's words in one line; it may quote a damaged schema at length."""
+    words = " ".join(str(error).split())
+    return words if len(words) <= 120 else f"{words[:117]}..."
+
+
+def _reading_fault(name: str, error: Exception) -> str:
+    if fault := _system_fault(error):
+        return fault
+    if getattr(error, "sqlite_errorname", "") == "SQLITE_INTERRUPT":
+        return (
+            "reading it asks for more work than any pyramid file needs; give one that "
+            "an analysis made"
+        )
+    if os.path.exists(f"{name}-wal"):
+        return (
+            f"this is no GeoPackage, or a damaged one ({_short(error)}); {name}-wal lies beside "
+            "it, and if that is left over from an older file of this name, remove it"
+        )
+    return (
+        f"this is no GeoPackage, or a damaged one ({_short(error)}); give a pyramid file that "
+        "an analysis made"
+    )
 
 
 def table_names(connection: sqlite3.Connection) -> set[str]:
-    """Names of the tables, not of views that pose as tables."""
-    rows = connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
+    """Names of the ordinary tables, not of views or virtual tables that pose as such."""
+    rows = connection.execute(
+        "SELECT name FROM sqlite_master WHERE type = 'table' AND rootpage > 0"
+    )
     return {str(name) for (name,) in rows}
+
+
+def ordinary_columns(connection: sqlite3.Connection, table: str) -> set[str]:
+    """Names of the columns whose values are stored, not reckoned as they are read.
+
+    Parameters
+    ----------
+    connection : sqlite3.Connection
+    table : str
+        Of this package's own naming, never of the file's.
+    """
+    rows = connection.execute(f"PRAGMA table_xinfo({table})")
+    return {str(name) for _, name, _, _, _, _, hidden in rows if not hidden}
 
 
 def register_attributes_table(connection: sqlite3.Connection, table: str, description: str) -> None:
@@ -149,7 +284,10 @@ def register_attributes_table(connection: sqlite3.Connection, table: str, descri
 
 
 def write_styles(path: str | os.PathLike[str], styles: Iterable[LayerStyle]) -> None:
-    """Store the default style of layers, where QGIS looks for it when it opens them."""
+    """Store the default style of layers, where QGIS looks for it when it opens them.
+
+    This is the last step in writing a file; all its contents are dated from it.
+    """
     rows = [
         ("", "", layer, "geom", name, qml, None, 1, description, "", None, now())
         for layer, name, qml, description in styles
@@ -164,6 +302,9 @@ def write_styles(path: str | os.PathLike[str], styles: Iterable[LayerStyle]) -> 
             "ui, update_time) VALUES (?,?,?,?,?,?,?,?,?,?,?,?)",
             rows,
         )
+        # GDAL stamps its own time on the layers that it writes. Its option against that holds for
+        # the whole process, and so for other threads.
+        connection.execute("UPDATE gpkg_contents SET last_change = ?", (now(),))
 
 
 def now() -> str:

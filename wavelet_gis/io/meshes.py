@@ -1,13 +1,13 @@
 """TINs as mesh files.
 
 PLY, OBJ, 2DM, STL and LandXML need numpy alone, so that QGIS needs nothing more; GLB and DXF are
-written by libraries, see `wavelet_gis.io.cad`.
+written by libraries, see `wavelet_gis.io.cad`. Which formats there are is the table
+`wavelet_gis.io.formats.MESH_FORMATS`.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 import wavelet_core
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import OutputFileError
-from wavelet_gis.io.cad import write_dxf, write_glb, write_landxml, write_stl
+from wavelet_gis.io.formats import MESH_SUFFIXES, any_of, mesh_format
 
-__all__ = ["MESH_SUFFIXES", "write_2dm", "write_mesh", "write_obj", "write_ply"]
+__all__ = ["write_2dm", "write_mesh", "write_obj", "write_ply"]
 
 #: Lines that are formatted at once.
 _LINES_AT_ONCE = 1 << 16
@@ -31,7 +31,7 @@ def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None
     Parameters
     ----------
     path : path
-        Ending in one of `MESH_SUFFIXES`.
+        Whose suffix is one of `wavelet_gis.io.formats.MESH_FORMATS`.
     mesh : TriangleMesh
         In the coordinates to be written.
     wkt : str, optional
@@ -44,17 +44,17 @@ def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None
     MissingDependencyError
         When the library that writes GLB or DXF is absent.
     """
-    suffix = Path(path).suffix.lower()
-    writer = _WRITERS.get(suffix)
-    if writer is None:
+    row = mesh_format(path)
+    if row is None:
         raise OutputFileError(
-            f"{path}: meshes are written as {', '.join(MESH_SUFFIXES)}; use one of these suffixes."
+            f"{path}: a mesh is written as {any_of(MESH_SUFFIXES)}; use one of these suffixes."
         )
-    if suffix == ".xml":
-        write_landxml(path, mesh, wkt)
-        return
-    writer(path, mesh)
-    if wkt and suffix == ".2dm":
+    writer = row.load_writer()
+    if row.takes_crs:
+        writer(path, mesh, wkt)
+    else:
+        writer(path, mesh)
+    if wkt and row.has_prj:
         Path(path).with_suffix(".prj").write_text(wkt, encoding="utf-8")
 
 
@@ -102,20 +102,6 @@ def write_2dm(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
                 f"ND {k} {x:.15g} {y:.15g} {z:.15g}\n"
                 for k, (x, y, z) in zip(numbers, block.tolist(), strict=True)
             )
-
-
-_WRITERS: dict[str, Callable[[str | os.PathLike[str], TriangleMesh], None]] = {
-    ".ply": write_ply,
-    ".obj": write_obj,
-    ".2dm": write_2dm,
-    ".stl": write_stl,
-    ".glb": write_glb,
-    ".xml": write_landxml,
-    ".dxf": write_dxf,
-}
-
-#: Suffixes of the formats that `write_mesh` writes.
-MESH_SUFFIXES = tuple(_WRITERS)
 
 
 def _write_lines(stream: IO[str], pattern: str, rows: NDArray[np.generic]) -> None:

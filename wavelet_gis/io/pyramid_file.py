@@ -2,21 +2,26 @@
 
 Tables, beside the layers that other modules add:
 
-* ``wavelet_metadata`` (name, value): JSON texts: format, pyramid, crs, frame, source;
+* ``wavelet_metadata`` (name, value): JSON texts: format, pyramid, crs, frame, source, checksums;
 * ``wavelet_levels``: vertices, triangles and errors of each level, for people;
-* ``wavelet_arrays`` (name, dtype, shape, filter, chunk_rows) and ``wavelet_chunks`` (array_id,
-  sequence, data): arrays of plain numbers, see `wavelet_gis.io.array_codec`.
+* ``wavelet_arrays`` and ``wavelet_chunks``: arrays of plain numbers, see
+  `wavelet_gis.io.array_tables`.
+
+Every array has a checksum in its row, and the checksums of all rows, of the levels and of each
+piece of metadata are among the metadata. Files of before there were any (which do not name them in
+their format) are read without.
 
 Reading trusts nothing: types, sizes, shapes and index ranges are checked before use.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import os
 import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
@@ -24,22 +29,30 @@ from typing import Any
 from numpy.typing import NDArray
 
 import wavelet_core
-from wavelet_core import Pyramid, Step
-from wavelet_core.accuracy.level_errors import LevelErrors
-from wavelet_core.errors import Cancelled, PyramidError
+from wavelet_core import Cancelled, Progress, Pyramid, PyramidError, Step, WaveletError
+from wavelet_core.metrics import LevelErrors
+from wavelet_core.progress import report
+from wavelet_gis._fields import LONGEST_JSON, Fields, parse_json
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
-from wavelet_gis.errors import InputFileError
-from wavelet_gis.io.array_codec import ArrayHeader, decode_array, encode_array, header_of
+from wavelet_gis.errors import InputFileError, OutputFileError
+from wavelet_gis.io import array_tables
+from wavelet_gis.io.array_tables import (
+    StoredArrays,
+    WrittenArrays,
+    read_entries,
+    write_arrays,
+)
 from wavelet_gis.io.geopackage import (
     create_geopackage,
     open_for_writing,
     open_stranger,
+    ordinary_columns,
     register_attributes_table,
     table_names,
 )
-from wavelet_gis.model.cloud_origin import PointSource
-from wavelet_gis.model.dem import RasterSource
-from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource, Source
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.origin import origin_from_parts
+from wavelet_gis.notes import Note
 
 __all__ = ["FORMAT_VERSION", "read_pyramid", "read_summary", "write_pyramid"]
 
@@ -48,24 +61,25 @@ FORMAT_VERSION = 1
 
 _FORMAT = "terrain-wavelets pyramid"
 
+#: Of the checksums; a reader that does not know the algorithm refuses the file.
+_ALGORITHM = "sha256"
+
 #: More levels than this are no pyramid of ours; each would cost tables and memory.
 _MAX_LEVELS = 1000
 
-_SCHEMA = """
+_MAX_METADATA = 100
+
+_SCHEMA = (
+    """
 CREATE TABLE wavelet_metadata (
   id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE, value TEXT NOT NULL);
 CREATE TABLE wavelet_levels (
   id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, level INTEGER NOT NULL,
   n_vertices INTEGER NOT NULL, n_faces INTEGER NOT NULL, rmse_coefficients REAL,
   rmse_surface REAL, max_error_surface REAL, n_uncovered INTEGER);
-CREATE TABLE wavelet_arrays (
-  id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE, dtype TEXT NOT NULL,
-  shape TEXT NOT NULL, filter TEXT NOT NULL, chunk_rows INTEGER NOT NULL);
-CREATE TABLE wavelet_chunks (
-  id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, array_id INTEGER NOT NULL,
-  sequence INTEGER NOT NULL, data BLOB NOT NULL);
-CREATE INDEX wavelet_chunks_of_array ON wavelet_chunks (array_id, sequence);
 """
+    + array_tables.SCHEMA
+)
 
 _TABLES = {
     "wavelet_metadata": "Format, CRS, parameters and source of the wavelet pyramid (JSON)",
@@ -74,23 +88,44 @@ _TABLES = {
     "wavelet_chunks": "Compressed contents of the arrays",
 }
 
-#: Arrays of one step, with the only data type that each may have.
-_STEP_DTYPES = {
-    "odd": "<i4",
-    "target": "<i4",
-    "indptr": "<i8",
-    "indices": "<i4",
-    "weights": "<f8",
-    "details": "<f8",
+_LEVEL_COLUMNS = (
+    "level",
+    "n_vertices",
+    "n_faces",
+    "rmse_coefficients",
+    "rmse_surface",
+    "max_error_surface",
+    "n_uncovered",
+)
+
+#: Columns that a reader needs; all of them stored, none generated.
+_COLUMNS = {
+    "wavelet_metadata": {"name", "value"},
+    "wavelet_levels": {"id", *_LEVEL_COLUMNS},
+    "wavelet_arrays": {"id", "name", "dtype", "shape", "filter", "chunk_rows"},
+    "wavelet_chunks": {"array_id", "sequence", "data"},
 }
 
-Progress = Callable[[float], bool | None]
+#: Arrays of one step, with the only data type and number of dimensions that each may have.
+_STEP_ARRAYS = {
+    "odd": ("<i4", 1),
+    "target": ("<i4", 1),
+    "indptr": ("<i8", 1),
+    "indices": ("<i4", 1),
+    "weights": ("<f8", 1),
+    "details": ("<f8", 2),
+}
+
+#: Part of the time of writing that is spent before the file is read back.
+_SHARE_OF_WRITING = 0.8
+
+_CANCELLED = "writing the pyramid was cancelled; nothing was kept."
 
 
 def write_pyramid(
     path: str | os.PathLike[str], geo: GeoPyramid, progress: Progress | None = None
 ) -> None:
-    """Write a pyramid to a new GeoPackage without spatial layers.
+    """Write a pyramid to a new GeoPackage without spatial layers, and read it back.
 
     Parameters
     ----------
@@ -100,25 +135,32 @@ def write_pyramid(
         What to write.
     progress : callable, optional
         Called with a fraction in [0, 1]; returning False stops with `Cancelled`.
+
+    Raises
+    ------
+    OutputFileError
+        When the file cannot be written, or its reader does not take it.
     """
     metadata, arrays = _to_parts(geo)
+    texts = {name: json.dumps(value, allow_nan=False, sort_keys=True) for name, value in
+             metadata.items()}  # fmt: skip
+    total, done = sum(array.nbytes for array in arrays.values()) or 1, 0
     create_geopackage(path)
     with open_for_writing(path) as connection, _pool() as pool:
         connection.executescript(_SCHEMA)
         for table, description in _TABLES.items():
             register_attributes_table(connection, table, description)
-        for name, value in metadata.items():
-            text = json.dumps(value, allow_nan=False, sort_keys=True)
-            connection.execute(
-                "INSERT INTO wavelet_metadata (name, value) VALUES (?, ?)", (name, text)
-            )
         _write_levels(connection, geo)
-        total, done = sum(array.nbytes for array in arrays.values()) or 1, 0
-        for name, array in arrays.items():
-            _write_array(connection, name, array, pool)
-            done += array.nbytes
-            if progress is not None and progress(done / total) is False:
-                raise Cancelled("writing the pyramid was cancelled; nothing was kept.")
+        for n_bytes in write_arrays(connection, arrays, pool):
+            done += n_bytes
+            report(progress, _SHARE_OF_WRITING * done / total, _CANCELLED)
+        entries = read_entries(connection, with_checksums=True)
+        checksums = _checksums(texts, _read_levels(connection), entries)
+        texts["checksums"] = json.dumps(checksums, sort_keys=True)
+        connection.executemany(
+            "INSERT INTO wavelet_metadata (name, value) VALUES (?, ?)", texts.items()
+        )
+    _read_back(path, arrays, total, progress)
 
 
 def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
@@ -132,22 +174,14 @@ def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
     Raises
     ------
     InputFileError
-        When the file is missing, no GeoPackage, or holds no pyramid.
+        When the file is missing, held by another program, no GeoPackage, or holds no pyramid.
     PyramidError
-        When its parts are damaged or do not fit together.
+        When its parts are damaged, are not those that were written, or do not fit together.
     """
-    with open_stranger(path) as connection, _pool() as pool:
-        metadata = _read_metadata(connection, path)
-        try:
-            arrays = _Arrays(connection, pool)
-            return _from_parts(metadata, arrays, _read_levels(connection))
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
-            if isinstance(error, PyramidError):
-                raise PyramidError(f"{path}: {error}") from error
-            raise PyramidError(
-                f"{path}: the description of the pyramid is damaged ({error!r}); analyse the "
-                "input anew."
-            ) from error
+    with open_stranger(path) as connection, _pool() as pool, _one_line(path):
+        contents = _Contents(connection)
+        arrays = StoredArrays(connection, pool, contents.entries, os.path.getsize(path))
+        return _from_parts(contents, arrays)
 
 
 def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -156,12 +190,63 @@ def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
     Raises
     ------
     InputFileError
-        When the file is missing, no GeoPackage, or holds no pyramid.
+        When the file is missing, held by another program, no GeoPackage, or holds no pyramid.
+    PyramidError
+        When the metadata are damaged or not those that were written.
     """
-    with open_stranger(path) as connection:
-        summary = _read_metadata(connection, path)
-        summary["levels"] = [errors._asdict() for errors in _read_levels(connection)]
+    with open_stranger(path) as connection, _one_line(path):
+        contents = _Contents(connection)
+        _check_source(contents.metadata.fields("source"))
+        summary = dict(contents.metadata)
+        summary["levels"] = [errors._asdict() for errors in contents.levels]
         return summary
+
+
+def _read_back(
+    path: str | os.PathLike[str],
+    arrays: Mapping[str, NDArray[Any]],
+    total: int,
+    progress: Progress | None,
+) -> None:
+    """Have the reader take a file that was just written, without room for its arrays."""
+    done = 0
+
+    def tell(n_bytes: int) -> None:
+        nonlocal done
+        done += n_bytes
+        share = min(done / total, 1.0)
+        report(progress, _SHARE_OF_WRITING + (1 - _SHARE_OF_WRITING) * share, _CANCELLED)
+
+    try:
+        with open_stranger(path) as connection, _pool() as pool:
+            contents = _Contents(connection)
+            size = os.path.getsize(path)
+            _from_parts(
+                contents, WrittenArrays(connection, pool, contents.entries, size, arrays, tell)
+            )
+    except Cancelled:
+        raise
+    except WaveletError as error:
+        raise OutputFileError(
+            f"{path}: the pyramid was written, but its reader does not take it ({error}); nothing "
+            "was kept. Check the disk; if it is sound, please report this."
+        ) from error
+
+
+@contextmanager
+def _one_line(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Name the file in whatever is said of its contents."""
+    try:
+        yield
+    except InputFileError as error:
+        raise InputFileError(f"{path}: {error}") from error
+    except WaveletError as error:
+        raise PyramidError(f"{path}: {error}") from error
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        raise PyramidError(
+            f"{path}: the description of the pyramid is damaged ({error!r}); analyse the "
+            "input anew."
+        ) from error
 
 
 # -- what goes in, and how it comes out ----------------------------------------------------------
@@ -175,16 +260,15 @@ def _to_parts(geo: GeoPyramid) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
     if pyramid.locked is not None:
         arrays["locked"] = pyramid.locked
     for level, step in enumerate(pyramid.steps):
-        for name in _STEP_DTYPES:
+        for name in _STEP_ARRAYS:
             arrays[f"steps/{level:04d}/{name}"] = getattr(step, name)
-    source: dict[str, Any] = {"kind": geo.source.kind}
-    if not isinstance(geo.source, MeshSource):
-        source, source_arrays = geo.source.to_parts()
-        arrays.update(source_arrays)
-    metadata = {
+    source, source_arrays = geo.origin.to_parts()
+    arrays.update(source_arrays)
+    metadata: dict[str, Any] = {
         "format": {
             "name": _FORMAT,
             "version": FORMAT_VERSION,
+            "checksums": _ALGORITHM,
             "software": f"terrain-wavelets {wavelet_core.__version__}",
         },
         "pyramid": {
@@ -204,68 +288,163 @@ def _to_parts(geo: GeoPyramid) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
         "source_name": os.path.basename(geo.source_name),
         "history": list(geo.history),
     }
+    if geo.notes:
+        metadata["notes"] = [note.to_dict() for note in geo.notes]
     return metadata, arrays
 
 
-def _from_parts(
-    metadata: dict[str, Any], arrays: _Arrays, levels: tuple[LevelErrors, ...]
-) -> GeoPyramid:
-    described = metadata["pyramid"]
-    n_levels = described["n_levels"]
-    if not isinstance(n_levels, int) or not 0 <= n_levels <= _MAX_LEVELS:
-        raise PyramidError(f"the file claims {n_levels!r} levels; analyse the input anew.")
+def _from_parts(contents: _Contents, arrays: StoredArrays) -> GeoPyramid:
+    metadata = contents.metadata
+    described = metadata.fields("pyramid")
+    n_levels = described.integer("n_levels", 0, _MAX_LEVELS)
     steps = [
         Step(
             **{
-                name: arrays.get(f"steps/{k:04d}/{name}", code)
-                for name, code in _STEP_DTYPES.items()
+                name: arrays.get(f"steps/{k:04d}/{name}", *kind)
+                for name, kind in _STEP_ARRAYS.items()
             }
         )
         for k in range(n_levels)
     ]
-    signal = described["signal"]
-    locked = arrays.get("locked", "|u1").astype(bool) if described["has_locked"] else None
+    signal = described.choice("signal", ("z", "xyz"))
+    coarse = arrays.get("coarse", "<f8", 2)
+    if not len(coarse):
+        raise PyramidError("the coarsest level has no vertices; the file is damaged.")
+    has_locked = described.flag("has_locked")
     pyramid = Pyramid.from_parts(
-        faces=arrays.get("faces", "<i4"),
-        horizontal=arrays.get("horizontal", "<f8") if signal == "z" else None,
-        coarse=arrays.get("coarse", "<f8"),
+        faces=arrays.get("faces", "<i4", 2),
+        horizontal=arrays.get("horizontal", "<f8", 2) if signal == "z" else None,
+        coarse=coarse,
         steps=steps,
-        channels=[str(name) for name in described["channels"]],
+        channels=described.texts("channels"),
         signal=signal,
-        update=described["update"],
-        locked=locked,
-        parameters=dict(described["parameters"]),
+        update=described.text("update"),
+        locked=arrays.get("locked", "|u1", 1).astype(bool) if has_locked else None,
+        parameters=dict(described.fields("parameters")),
     )
-    source = _source_from(metadata["source"], arrays)
-    if not isinstance(source, MeshSource):
-        n_vertices = pyramid.n_vertices(pyramid.n_levels)
-        if source.n_vertices != n_vertices:
-            raise PyramidError(
-                f"the source has {source.n_vertices} vertices, the pyramid {n_vertices}; analyse "
-                "the input anew."
-            )
+    fields = metadata.fields("source")
+    _check_source(fields)
+    origin = origin_from_parts(fields, arrays.all_named("source/"))
+    n_vertices = pyramid.n_vertices(pyramid.n_levels)
+    if origin.n_vertices not in (None, n_vertices):
+        raise PyramidError(
+            f"the source has {origin.n_vertices} vertices, the pyramid {n_vertices}; analyse "
+            "the input anew."
+        )
+    levels = contents.levels[::-1]
     return GeoPyramid(
         pyramid=pyramid,
-        system=CoordinateSystem.from_dict(metadata["crs"]),
-        frame=LocalFrame.from_dict(metadata["frame"]),
-        vertical_unit=str(metadata["vertical_unit"]),
-        source=source,
-        source_name=str(metadata["source_name"]),
+        system=CoordinateSystem.from_dict(metadata.fields("crs")),
+        frame=LocalFrame.from_dict(metadata.fields("frame")),
+        vertical_unit=metadata.text("vertical_unit"),
+        origin=origin,
+        source_name=metadata.text("source_name"),
         errors=levels if len(levels) == n_levels + 1 and _are_measured(levels) else None,
-        history=tuple(str(line) for line in metadata["history"]),
+        history=tuple(metadata.texts("history")),
+        notes=tuple(Note.from_dict(fields) for fields in metadata.objects("notes"))
+        if "notes" in metadata
+        else (),
     )
 
 
-def _source_from(fields: dict[str, Any], arrays: _Arrays) -> Source:
-    kind = fields["kind"]
-    if kind == "tin":
-        return MeshSource()
-    if kind not in ("raster", "points"):
-        raise PyramidError(f"the file claims a source of kind {kind!r}; analyse the input anew.")
-    of_source = arrays.all_named("source/")
+def _check_source(fields: Fields) -> None:
+    """Check what a summary tells of the source; the rest is checked when it is used."""
+    kind = fields.choice("kind", ("raster", "points", "tin"))
     if kind == "raster":
-        return RasterSource.from_parts(fields, of_source)
-    return PointSource.from_parts(fields, of_source)
+        if len(fields.integers("shape", 1)) != 2:
+            raise fields.fault("shape is not that of a raster")
+        fields.text("dtype")
+    elif kind == "points":
+        fields.integer("n_points")
+        if fields["classes"] is not None:
+            fields.integers("classes")
+
+
+class _Contents:
+    """What a file says in words, verified: metadata, figures of the levels, entries of the arrays.
+
+    Raises
+    ------
+    InputFileError
+        When there is no pyramid in the file.
+    PyramidError
+        When there is one, and it is damaged.
+    """
+
+    def __init__(self, connection: sqlite3.Connection) -> None:
+        has_checksums = _require_tables(connection)
+        texts = _read_texts(connection)
+        parsed = {name: parse_json(text, f"the metadata {name!r}") for name, text in texts.items()}
+        self.metadata = Fields(parsed, "the pyramid")
+        self.levels = _read_levels(connection)
+        declares = _require_format(self.metadata)
+        is_verified = declares or has_checksums or "checksums" in self.metadata
+        if is_verified and not has_checksums:
+            raise PyramidError("the checksums of the arrays are missing; the file is damaged.")
+        self.entries = read_entries(connection, with_checksums=is_verified)
+        if is_verified:
+            stored = self.metadata.fields("checksums")
+            del texts["checksums"]
+            _compare(stored, _checksums(texts, self.levels, self.entries))
+            del self.metadata["checksums"]
+        self._check()
+
+    def _check(self) -> None:
+        """Check what every reader needs."""
+        described = self.metadata.fields("pyramid")
+        described.integer("n_levels", 0, _MAX_LEVELS)
+        described.fields("parameters")
+        described.texts("channels")
+        CoordinateSystem.from_dict(self.metadata.fields("crs"))
+        LocalFrame.from_dict(self.metadata.fields("frame"))
+        for name in ("vertical_unit", "source_name"):
+            self.metadata.text(name)
+        self.metadata.texts("history")
+
+
+# -- checksums -----------------------------------------------------------------------------------
+
+
+def _checksums(
+    texts: Mapping[str, str],
+    levels: tuple[LevelErrors, ...],
+    entries: Mapping[str, array_tables.Entry],
+) -> dict[str, Any]:
+    """Return the checksums of each piece of metadata, of the levels, and of the arrays' table."""
+    return {
+        "metadata": {name: _digest(text) for name, text in texts.items()},
+        "levels": _digest(json.dumps([list(level) for level in levels])),
+        "arrays": _digest(
+            json.dumps(
+                [
+                    [name, entry.header.dtype, entry.header.shape, entry.header.filter,
+                     entry.header.chunk_rows, entry.checksum]
+                    for name, entry in entries.items()
+                ]
+            )
+        ),
+    }  # fmt: skip
+
+
+def _compare(stored: Fields, actual: dict[str, Any]) -> None:
+    """Raise unless the checksums are those stored, naming the first part that is another."""
+    of_metadata = stored.fields("metadata")
+    if changed := {*of_metadata} ^ {*actual["metadata"]}:
+        raise PyramidError(f"the metadata {min(changed)!r} came or went; {_RESTORE}")
+    for name, checksum in actual["metadata"].items():
+        if of_metadata[name] != checksum:
+            raise PyramidError(f"the checksum of the metadata {name!r} is wrong, {_CHANGED}")
+    for name, what in (("levels", "the levels' figures"), ("arrays", "the list of arrays")):
+        if stored[name] != actual[name]:
+            raise PyramidError(f"the checksum of {what} is wrong, {_CHANGED}")
+
+
+_RESTORE = "restore the file from a copy, or analyse the input anew."
+_CHANGED = f"so this is not what was written; {_RESTORE}"
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 # -- tables --------------------------------------------------------------------------------------
@@ -280,7 +459,7 @@ def _write_levels(connection: sqlite3.Connection, geo: GeoPyramid) -> None:
             for level in range(pyramid.n_levels, -1, -1)
         ]
     else:
-        rows = [tuple(level) for level in geo.errors]
+        rows = [tuple(level) for level in reversed(geo.errors)]
     connection.executemany(
         "INSERT INTO wavelet_levels (level, n_vertices, n_faces, rmse_coefficients, rmse_surface, "
         "max_error_surface, n_uncovered) VALUES (?,?,?,?,?,?,?)",
@@ -289,11 +468,17 @@ def _write_levels(connection: sqlite3.Connection, geo: GeoPyramid) -> None:
 
 
 def _read_levels(connection: sqlite3.Connection) -> tuple[LevelErrors, ...]:
+    # What is no number is not even fetched; it may be long, and would be told to nobody.
+    columns = ", ".join(
+        f"CASE WHEN TYPEOF({name}) IN ('integer', 'real') THEN {name} END"
+        for name in _LEVEL_COLUMNS
+    )
     rows = connection.execute(
-        "SELECT level, n_vertices, n_faces, rmse_coefficients, rmse_surface, max_error_surface, "
-        "n_uncovered FROM wavelet_levels ORDER BY id LIMIT ?",
-        (_MAX_LEVELS + 1,),
+        f"SELECT {columns} FROM wavelet_levels ORDER BY id LIMIT ?",  # nosec B608
+        (_MAX_LEVELS + 2,),
     ).fetchall()
+    if len(rows) > _MAX_LEVELS + 1:
+        raise PyramidError(f"the file has more than {_MAX_LEVELS} levels; it is damaged.")
     kinds = (int, int, int, float, float, float, int)
     return tuple(
         LevelErrors(*(_figure(value, kind) for value, kind in zip(row, kinds, strict=True)))
@@ -312,94 +497,54 @@ def _figure(value: object, kind: type) -> Any:
     return math.nan
 
 
-def _read_metadata(connection: sqlite3.Connection, path: str | os.PathLike[str]) -> dict[str, Any]:
-    missing = set(_TABLES) - table_names(connection)
-    if missing:
+def _require_tables(connection: sqlite3.Connection) -> bool:
+    """Raise unless the tables are there and hold what they say; tell if there are checksums."""
+    if missing := set(_TABLES) - table_names(connection):
         raise InputFileError(
-            f"{path}: this GeoPackage holds no wavelet pyramid (no table "
-            f"{', '.join(sorted(missing))}); give one that 'terrain-wavelets analyse' wrote."
+            f"this GeoPackage holds no wavelet pyramid (no table {', '.join(sorted(missing))}); "
+            "give one that an analysis made."
         )
-    metadata = {}
-    for name, value in connection.execute("SELECT name, value FROM wavelet_metadata LIMIT 100"):
-        try:
-            metadata[str(name)] = json.loads(value)
-        except (TypeError, ValueError, RecursionError) as error:
-            raise PyramidError(
-                f"{path}: the metadata {name!r} are no JSON ({error}); the file is damaged."
-            ) from error
+    columns = {table: ordinary_columns(connection, table) for table in _TABLES}
+    for table, needed in _COLUMNS.items():
+        if missing := needed - columns[table]:
+            raise InputFileError(
+                f"this GeoPackage holds no wavelet pyramid of ours (no column {min(missing)} in "
+                f"{table}); give one that an analysis made."
+            )
+    return "checksum" in columns["wavelet_arrays"]
+
+
+def _read_texts(connection: sqlite3.Connection) -> dict[str, str]:
+    texts: dict[str, str] = {}
+    n_characters = 0
+    for name, value in connection.execute("SELECT name, value FROM wavelet_metadata"):
+        if not isinstance(name, str) or not isinstance(value, str) or name in texts:
+            raise PyramidError(f"the metadata {str(name)[:40]!r} are no text; the file is damaged.")
+        n_characters += len(name) + len(value)
+        if n_characters > 2 * LONGEST_JSON or len(texts) == _MAX_METADATA:
+            raise PyramidError("more metadata than any pyramid has; the file is damaged.")
+        texts[name] = value
+    return texts
+
+
+def _require_format(metadata: Fields) -> bool:
+    """Raise unless the format is one that this program reads; tell if it declares checksums."""
     format_ = metadata.get("format")
     if not isinstance(format_, dict) or format_.get("name") != _FORMAT:
-        raise InputFileError(f"{path}: this GeoPackage is no wavelet pyramid of ours.")
-    if format_.get("version") != FORMAT_VERSION:
+        raise InputFileError("this GeoPackage is no wavelet pyramid of ours.")
+    described = Fields(format_, "the format")
+    if described["version"] != FORMAT_VERSION:
         raise InputFileError(
-            f"{path}: the file has format version {format_.get('version')!r}, this program reads "
+            f"the file has format version {str(described['version'])[:20]}, this program reads "
             f"{FORMAT_VERSION}; update terrain-wavelets."
         )
-    return metadata
-
-
-def _write_array(
-    connection: sqlite3.Connection, name: str, array: NDArray[Any], pool: ThreadPoolExecutor
-) -> None:
-    header = header_of(array)
-    cursor = connection.execute(
-        "INSERT INTO wavelet_arrays (name, dtype, shape, filter, chunk_rows) VALUES (?,?,?,?,?)",
-        (name, header.dtype, json.dumps(header.shape), header.filter, header.chunk_rows),
-    )
-    connection.executemany(
-        "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES (?,?,?)",
-        (
-            (cursor.lastrowid, sequence, chunk)
-            for sequence, chunk in enumerate(encode_array(array, pool))
-        ),
-    )
-
-
-class _Arrays:
-    """The arrays of a file, each read when it is asked for."""
-
-    def __init__(self, connection: sqlite3.Connection, pool: ThreadPoolExecutor) -> None:
-        self._connection = connection
-        self._pool = pool
-        self._headers: dict[str, tuple[int, ArrayHeader]] = {}
-        rows = connection.execute(
-            "SELECT id, name, dtype, shape, filter, chunk_rows FROM wavelet_arrays LIMIT 100000"
+    described.text("software", 200)
+    if described.get("checksums", _ALGORITHM) != _ALGORITHM:
+        raise InputFileError(
+            f"the file has checksums by {str(described['checksums'])[:20]!r}, this program knows "
+            f"{_ALGORITHM}; update terrain-wavelets."
         )
-        for array_id, name, dtype, shape, filter_name, chunk_rows in rows:
-            header = ArrayHeader.checked(dtype, json.loads(shape), filter_name, chunk_rows)
-            self._headers[str(name)] = (array_id, header)
-
-    def get(self, name: str, dtype: str | None = None) -> NDArray[Any]:
-        """Return an array, of the data type that it must have."""
-        if name not in self._headers:
-            raise PyramidError(f"the array {name} is missing; the file is damaged.")
-        array_id, header = self._headers[name]
-        if dtype is not None and header.dtype != dtype:
-            raise PyramidError(
-                f"the array {name} holds {header.dtype} where {dtype} is due; the file is damaged."
-            )
-        n_bytes = self._connection.execute(
-            "SELECT COALESCE(SUM(LENGTH(data)), 0) FROM wavelet_chunks WHERE array_id = ?",
-            (array_id,),
-        ).fetchone()[0]
-        try:
-            return decode_array(header, self._chunks(array_id), int(n_bytes), self._pool)
-        except PyramidError as error:
-            raise PyramidError(f"array {name}: {error}") from error
-
-    def all_named(self, prefix: str) -> dict[str, NDArray[Any]]:
-        """Return all arrays whose names begin so."""
-        return {name: self.get(name) for name in self._headers if name.startswith(prefix)}
-
-    def _chunks(self, array_id: int) -> Iterator[bytes]:
-        rows = self._connection.execute(
-            "SELECT sequence, data FROM wavelet_chunks WHERE array_id = ? ORDER BY sequence",
-            (array_id,),
-        )
-        for expected, (sequence, data) in enumerate(rows):
-            if sequence != expected or not isinstance(data, bytes):
-                raise PyramidError(f"chunk {expected} is missing or no bytes; the file is damaged.")
-            yield data
+    return "checksums" in described
 
 
 @contextmanager

@@ -107,7 +107,7 @@ def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
     """
     import rasterio
 
-    with _complaints_about(path, "as a cloud-optimised GeoTIFF", "leave --cog out"):
+    with _complaints_about(path, "as a cloud-optimised GeoTIFF", "leave {0} out", "cog"):
         profile = _profile_to_write(dem, wkt, "COG")
         options = {"compress": "deflate", "predictor": "yes"}
         with rasterio.open(path, "w", **profile, **options) as dataset:
@@ -132,7 +132,9 @@ def _profile_to_write(dem: Dem, wkt: str | None, driver: str) -> dict[str, Any]:
 
 
 @contextmanager
-def _complaints_about(path: str | os.PathLike[str], what: str, remedy: str) -> Iterator[None]:
+def _complaints_about(
+    path: str | os.PathLike[str], what: str, remedy: str, *options: str
+) -> Iterator[None]:
     """Turn what GDAL and rasterio raise in the block into one error of ours."""
     from rasterio._err import CPLE_BaseError
     from rasterio.errors import NotGeoreferencedWarning, RasterioError
@@ -145,7 +147,11 @@ def _complaints_about(path: str | os.PathLike[str], what: str, remedy: str) -> I
     # GDAL's own errors reach us bare where rasterio only hands a call through.
     except (RasterioError, CPLE_BaseError, ValueError) as error:
         raise OutputFileError(
-            f"{path}: GDAL cannot write this {what} ({error}); {remedy}."
+            "{path}: GDAL cannot write this {what} ({error}); " + remedy + ".",
+            *options,
+            path=path,
+            what=what,
+            error=error,
         ) from error
 
 
@@ -168,8 +174,10 @@ def _read_band(dataset: DatasetReader, path: Path, band: int | None) -> tuple[De
         )
     if band is None and dataset.count > 1:
         raise InputFileError(
-            f"{path}: the raster has {dataset.count} bands; choose the one with the elevations "
-            "with --band."
+            "{path}: the raster has {n_bands} bands; choose the one with the elevations by {0}.",
+            "band",
+            path=path,
+            n_bands=dataset.count,
         )
     index = 1 if band is None else band
     if not 1 <= index <= dataset.count:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.errors import CrsWarning, OutputFileError
-from wavelet_gis.io.geopackage import LayerStyle, now, write_styles
+from wavelet_gis.io.geopackage import LayerStyle, write_styles
 from wavelet_gis.products.layers import Layer
 
 __all__ = ["add_layers"]
@@ -38,20 +38,13 @@ def add_layers(
     OutputFileError
         When GDAL cannot write them.
     """
-    import pyogrio
-
     styles: list[LayerStyle] = []
     n_features = 0
     crs = _crs_for_gdal(system)
-    # GDAL stamps the time of writing on each layer; see `wavelet_gis.io.geopackage.now`.
-    pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": now()})
-    try:
-        for layer in layers:
-            _write_layer(path, layer, crs)
-            styles.append((layer.name, layer.title, layer.style, layer.description))
-            n_features += len(layer.geometry)
-    finally:
-        pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": None})
+    for layer in layers:
+        _write_layer(path, layer, crs)
+        styles.append((layer.name, layer.title, layer.style, layer.description))
+        n_features += len(layer.geometry)
     write_styles(path, styles)
     return n_features
 

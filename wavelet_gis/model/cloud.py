@@ -63,11 +63,18 @@ class PointCloud:
     carried : dict of str to (n_points, ...) arrays
         The other fields of the point records, to be given back untouched.
     header, evlrs : (n_bytes,) uint8
-        Header with VLRs, and extended VLRs, as laspy reads them.
+        The file up to its first point, and what is kept of what follows the last: extended VLRs,
+        waveform packets, bytes that nothing tells of.
+    evlrs_at : int or None
+        Offset that `evlrs` had in the file; None where it begins with the first extended VLR.
     n_in_file : int
         Points in the file; more than n_points when a class filter chose some.
     classes : tuple of int or None
         The class filter.
+    aside : (n_points,) bool, or None
+        Points that are carried without being part of the surface: withheld ones and noise.
+    is_altered : bool
+        Whether this is the outcome of a filter, whose extent is no longer the file's.
     """
 
     integers: NDArray[np.int32]
@@ -79,11 +86,19 @@ class PointCloud:
     evlrs: NDArray[np.uint8] = field(default_factory=lambda: np.empty(0, np.uint8))
     n_in_file: int = 0
     classes: tuple[int, ...] | None = None
+    aside: NDArray[np.bool_] | None = None
+    evlrs_at: int | None = None
+    is_altered: bool = False
 
     @property
     def n_points(self) -> int:
         """Number of chosen points."""
         return len(self.integers)
+
+    @property
+    def n_used(self) -> int:
+        """Number of points that are part of the surface."""
+        return self.n_points - (0 if self.aside is None else int(np.count_nonzero(self.aside)))
 
     def coordinates(self) -> NDArray[np.float64]:
         """Return x, y, z of the points in the file's units, ``(n_points, 3)``."""
@@ -98,8 +113,9 @@ class PointCloud:
 
 
 def cloud_bounds(cloud: PointCloud) -> tuple[float, float, float, float]:
-    """Return x_min, y_min, x_max, y_max of the points."""
-    low = cloud.integers.min(axis=0) * cloud.scales + cloud.offsets
-    high = cloud.integers.max(axis=0) * cloud.scales + cloud.offsets
+    """Return x_min, y_min, x_max, y_max of the points that are part of the surface."""
+    integers = cloud.integers if cloud.aside is None else cloud.integers[~cloud.aside]
+    low = integers.min(axis=0) * cloud.scales + cloud.offsets
+    high = integers.max(axis=0) * cloud.scales + cloud.offsets
     low, high = np.minimum(low, high), np.maximum(low, high)  # a scale may be negative
     return float(low[0]), float(low[1]), float(high[0]), float(high[1])

@@ -2,27 +2,42 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
-from wavelet_core.mesh.triangulation import delaunay_faces, merge_duplicates
+from wavelet_core.mesh.gaps import PointGaps, faces_within, gaps_of
+from wavelet_core.mesh.triangulation import delaunay_faces
+from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
-from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
+from wavelet_gis.model.cloud_aside import Aside, MergedHeights, merged_points
+from wavelet_gis.model.exact_restore import (
+    ExactColumn,
+    checksum,
+    exact_column,
+    nearest_of_dtype,
+    number_dtype,
+)
+from wavelet_gis.notes import warn
 
-__all__ = ["PointSource", "cloud_mesh"]
+__all__ = ["CloudOrigin", "cloud_mesh"]
+
+#: Gaps that take more than this share of a cloud's area are told of.
+TOLD_GAPS = 0.05
+
+_NO_SHIFTS = np.empty((0, 2), np.int64)
+_NOTHING_ASIDE = Aside(np.empty(0, np.int64), ())
 
 
 @dataclass(frozen=True, slots=True)
-class PointSource:
+class CloudOrigin:
     """How a pyramid's finest mesh becomes the points it was made from.
 
     Attributes
@@ -45,6 +60,16 @@ class PointSource:
         altered (filtered).
     checksum : str
         SHA-256 of the original columns.
+    aside : Aside
+        Points that are no part of the surface.
+    duplicates : str
+        The rule by which points that share x and y are merged.
+    shifts : (n_shifted, 2) int64
+        Vertices whose height is the mean of several points, and what the stored Z of their own
+        point is above it.
+    spacing : float or None
+        Side of the square that one point has to itself, in the working frame; None in a pyramid
+        of before this was stored.
     """
 
     cloud: PointCloud
@@ -55,8 +80,14 @@ class PointSource:
     dropped_attributes: tuple[NDArray[Any], ...]
     corrections: tuple[ExactColumn, ...] | None
     checksum: str
+    aside: Aside = _NOTHING_ASIDE
+    duplicates: str = "lowest"
+    shifts: NDArray[np.int64] = field(default_factory=_NO_SHIFTS.copy)
+    spacing: float | None = None
 
     kind = "points"
+    noun = "point cloud"
+    grid = None
 
     @classmethod
     def from_cloud(
@@ -64,47 +95,63 @@ class PointSource:
         cloud: PointCloud,
         kept: NDArray[np.int64],
         representative: NDArray[np.int64],
-    ) -> PointSource:
-        """Return the source of a cloud, before there is a pyramid (and so without corrections).
+        z_of_vertices: NDArray[np.int64] | None = None,
+        duplicates: str = "lowest",
+    ) -> CloudOrigin:
+        """Return the origin of a cloud, before there is a pyramid (and so without corrections).
 
         Parameters
         ----------
         cloud : PointCloud
             All points.
         kept, representative
-            As `wavelet_core.mesh.triangulation.merge_duplicates` returns them.
+            Of the points that are part of the surface, as
+            `wavelet_core.mesh.triangulation.merge_duplicates` returns them.
+        z_of_vertices : (n_kept,) int64, optional
+            Stored Z of the vertices, where it is not that of the points kept.
+        duplicates : str
+            The rule by which points were merged.
         """
-        is_dropped = np.ones(cloud.n_points, dtype=bool)
+        aside = Aside.of_cloud(cloud)
+        used = np.delete(np.arange(cloud.n_points), aside.rows)
+        is_dropped = np.ones(len(used), dtype=bool)
         is_dropped[kept] = False
-        dropped = np.flatnonzero(is_dropped)
-        vertex = representative[dropped]
-        differences = cloud.integers[dropped].astype(np.int64) - cloud.integers[kept[vertex]]
+        dropped, vertex, kept_rows = used[is_dropped], representative[is_dropped], used[kept]
+        of_vertices = cloud.integers[kept_rows].astype(np.int64)
+        shift = np.zeros(len(kept), np.int64)
+        if z_of_vertices is not None:
+            shift = of_vertices[:, 2] - z_of_vertices
+            of_vertices[:, 2] = z_of_vertices
+        shifted = np.flatnonzero(shift)
         return cls(
             cloud=_emptied(cloud),
             n_points=cloud.n_points,
             dropped=dropped,
             representative=vertex,
-            differences=differences,
+            differences=cloud.integers[dropped].astype(np.int64) - of_vertices[vertex],
             dropped_attributes=tuple(a.values[dropped] for a in cloud.attributes),
             corrections=None,
             checksum=checksum(cloud.columns()),
+            aside=aside,
+            duplicates=duplicates,
+            shifts=np.column_stack([shifted, shift[shifted]]).astype(np.int64),
         )
 
     def with_corrections(
         self, cloud: PointCloud, mesh: TriangleMesh, frame: LocalFrame
-    ) -> PointSource:
-        """Return the source that gives `cloud` back exactly from the synthesised `mesh`."""
-        kept = self._kept()
+    ) -> CloudOrigin:
+        """Return the origin that gives `cloud` back exactly from the synthesised `mesh`."""
+        kept = self.vertex_rows()
+        originals = [column[kept] for column in cloud.columns()]
+        originals[2][self.shifts[:, 0]] -= self.shifts[:, 1].astype(np.int32)
         columns = tuple(
-            exact_column(original[kept], approximate)
-            for original, approximate in zip(
-                cloud.columns(), self._approximate(mesh, frame), strict=True
-            )
+            exact_column(original, approximate)
+            for original, approximate in zip(originals, self._approximate(mesh, frame), strict=True)
         )
         return replace(self, corrections=columns)
 
-    def altered(self) -> PointSource:
-        """Return the source for a pyramid whose coefficients have been changed."""
+    def altered(self) -> CloudOrigin:
+        """Return the origin for a pyramid whose coefficients have been changed."""
         return replace(self, corrections=None)
 
     @property
@@ -113,9 +160,55 @@ class PointSource:
         return self.corrections is not None
 
     @property
+    def points(self) -> CloudOrigin:
+        """The points themselves."""
+        return self
+
+    @property
     def n_vertices(self) -> int:
         """Number of points that are vertices."""
-        return self.n_points - len(self.dropped)
+        return self.n_points - len(self.dropped) - len(self.aside.rows)
+
+    def vertex_rows(self) -> NDArray[np.int64]:
+        """Return the row in the file of the point that each vertex is."""
+        is_vertex = np.ones(self.n_points, dtype=bool)
+        is_vertex[self.dropped] = False
+        is_vertex[self.aside.rows] = False
+        return np.flatnonzero(is_vertex)
+
+    def merged_heights(self) -> MergedHeights:
+        """Return how far merged points are from the vertices that stand for them."""
+        apart = np.concatenate([self.differences[:, 2], self.shifts[:, 1]]).astype(np.float64)
+        apart *= abs(float(self.cloud.scales[2]))
+        return MergedHeights(
+            rule=self.duplicates,
+            n_points=len(self.dropped),
+            largest=float(np.abs(apart).max(initial=0.0)),
+            rms=float(np.sqrt(np.mean(apart**2))) if len(apart) else 0.0,
+        )
+
+    def points_for_errors(self, mesh: TriangleMesh, frame: LocalFrame) -> NDArray[np.float64]:
+        """Return every input point of the surface in the working frame, merged ones too.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            The finest one, whose vertices are the points that stand for others.
+        frame : LocalFrame
+            The working frame.
+
+        Returns
+        -------
+        (n, 3) float64
+            The points of the vertices first, in their order, then the merged ones. An error "at
+            all input points" is one at these.
+        """
+        unit = float(self.cloud.scales[2]) * frame.z_scale
+        of_vertices = mesh.vertices.copy()
+        merged = mesh.vertices[self.representative]
+        of_vertices[self.shifts[:, 0], 2] += self.shifts[:, 1] * unit
+        merged[:, 2] += self.differences[:, 2] * unit
+        return np.concatenate([of_vertices, merged])
 
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> PointCloud:
         """Return the points of the finest mesh of a pyramid, in their first order.
@@ -123,7 +216,7 @@ class PointSource:
         Raises
         ------
         PyramidError
-            When the mesh does not have the vertices of the source, or the exact original was
+            When the mesh does not have the vertices of the origin, or the exact original was
             due and the result's checksum is another.
         """
         if mesh.n_vertices != self.n_vertices or mesh.attributes.shape[1] != len(
@@ -134,7 +227,7 @@ class PointSource:
                 f"attributes for {self.n_vertices} points with {len(self.cloud.attributes)}; "
                 "only the finest level can be turned back into the points."
             )
-        kept = self._kept()
+        kept = self.vertex_rows()
         columns = [
             self._full_column(k, approximate, kept)
             for k, approximate in enumerate(self._approximate(mesh, frame))
@@ -143,7 +236,12 @@ class PointSource:
             replace(attribute, values=column)
             for attribute, column in zip(self.cloud.attributes, columns[3:], strict=True)
         )
-        cloud = replace(self.cloud, integers=np.column_stack(columns[:3]), attributes=attributes)
+        cloud = replace(
+            self.cloud,
+            integers=np.column_stack(columns[:3]),
+            attributes=attributes,
+            is_altered=not self.is_exact,
+        )
         if self.is_exact and checksum(cloud.columns()) != self.checksum:
             raise PyramidError(
                 "the reconstruction is not exactly the original (its checksum differs); "
@@ -162,18 +260,17 @@ class PointSource:
             of_vertices = self.corrections[k].restore(approximate)
         column = np.empty(self.n_points, dtype=dtype)
         column[kept] = of_vertices
-        if k < 3:
-            moved = of_vertices[self.representative].astype(np.int64) + self.differences[:, k]
-            limits = np.iinfo(dtype)
-            column[self.dropped] = np.clip(moved, limits.min, limits.max).astype(dtype)
-        else:
+        if len(self.aside.rows):
+            column[self.aside.rows] = self.aside.columns[k]
+        if k >= 3:
             column[self.dropped] = self.dropped_attributes[k - 3]
+            return column
+        vertices = of_vertices.astype(np.int64)
+        column[self.dropped] = _int32(vertices[self.representative] + self.differences[:, k])
+        if k == 2:
+            shifted, shift = self.shifts.T
+            column[kept[shifted]] = _int32(vertices[shifted] + shift)
         return column
-
-    def _kept(self) -> NDArray[np.int64]:
-        is_kept = np.ones(self.n_points, dtype=bool)
-        is_kept[self.dropped] = False
-        return np.flatnonzero(is_kept)
 
     def _approximate(self, mesh: TriangleMesh, frame: LocalFrame) -> Iterator[NDArray[np.float64]]:
         """Yield the columns of the mesh in the units that the file stores."""
@@ -208,6 +305,9 @@ class PointSource:
             "attributes": described,
             "carried": list(cloud.carried),
             "checksum": self.checksum,
+            "duplicates": self.duplicates,
+            "spacing": self.spacing,
+            "evlrs_at": cloud.evlrs_at,
         }
         arrays: dict[str, NDArray[Any]] = {
             "source/dropped": self.dropped,
@@ -215,7 +315,10 @@ class PointSource:
             "source/differences": self.differences,
             "source/header": cloud.header,
             "source/evlrs": cloud.evlrs,
+            **self.aside.to_arrays(),
         }
+        if len(self.shifts):
+            arrays["source/shifts"] = self.shifts
         for k, values in enumerate(self.dropped_attributes):
             arrays[f"source/dropped_attribute_{k}"] = values
         for k, values in enumerate(cloud.carried.values()):
@@ -229,8 +332,8 @@ class PointSource:
         return fields, arrays
 
     @classmethod
-    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> PointSource:
-        """Return the source that `to_parts` described, every claim checked.
+    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CloudOrigin:
+        """Return the origin that `to_parts` described, every claim checked.
 
         Raises
         ------
@@ -239,37 +342,40 @@ class PointSource:
         """
         try:
             return cls._from_parts(fields, arrays)
-        except (KeyError, TypeError, ValueError, OverflowError) as error:
-            if isinstance(error, PyramidError):
-                raise
+        except PyramidError:
+            raise
+        except (KeyError, TypeError, ValueError) as error:
             raise PyramidError(
                 f"the description of the points is damaged ({error}); analyse the input anew."
             ) from error
 
     @classmethod
-    def _from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> PointSource:
-        n_points = int(fields["n_points"])
-        attributes = tuple(_attribute(described) for described in fields["attributes"])
+    def _from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CloudOrigin:
+        stored = Fields(fields, "the points")
+        n_points = stored.integer("n_points")
+        attributes = tuple(_attribute(described) for described in stored.objects("attributes"))
         cloud = PointCloud(
             integers=np.empty((0, 3), np.int32),
-            scales=np.array(fields["scales"], dtype=np.float64),
-            offsets=np.array(fields["offsets"], dtype=np.float64),
+            scales=np.array(stored.numbers("scales", 3)),
+            offsets=np.array(stored.numbers("offsets", 3)),
             attributes=attributes,
             carried={
-                str(name): arrays[f"source/carried_{k}"] for k, name in enumerate(fields["carried"])
+                name: arrays[f"source/carried_{k}"]
+                for k, name in enumerate(stored.texts("carried"))
             },
             header=arrays["source/header"],
             evlrs=arrays["source/evlrs"],
-            n_in_file=int(fields["n_in_file"]),
-            classes=None if fields["classes"] is None else tuple(map(int, fields["classes"])),
+            n_in_file=stored.integer("n_in_file"),
+            classes=None if stored["classes"] is None else tuple(stored.integers("classes")),
+            evlrs_at=None if fields.get("evlrs_at") is None else stored.integer("evlrs_at"),
         )
         corrections = None
-        if "ledger" in fields:
+        if "ledger" in stored:
             corrections = tuple(
                 ExactColumn.from_parts(f"source/ledger_{k}", column, arrays)
-                for k, column in enumerate(fields["ledger"])
+                for k, column in enumerate(stored.objects("ledger"))
             )
-        source = cls(
+        origin = cls(
             cloud=cloud,
             n_points=n_points,
             dropped=arrays["source/dropped"],
@@ -279,15 +385,24 @@ class PointSource:
                 arrays[f"source/dropped_attribute_{k}"] for k in range(len(attributes))
             ),
             corrections=corrections,
-            checksum=str(fields["checksum"]),
+            checksum=stored.text("checksum", 200),
+            aside=Aside.from_arrays(arrays, attributes, n_points),
+            duplicates=stored.text("duplicates", 20) if "duplicates" in stored else "lowest",
+            shifts=arrays.get("source/shifts", _NO_SHIFTS),
+            spacing=None if fields.get("spacing") is None else stored.number("spacing"),
         )
-        source._check()
-        return source
+        origin._check()
+        return origin
 
     def _check(self) -> None:
         cloud, n_dropped = self.cloud, len(self.dropped)
         n_columns = 3 + len(cloud.attributes)
-        _require(self.n_points >= n_dropped, "more points dropped than there are")
+        _require(self.n_vertices >= 0, "more points dropped than there are")
+        _require(self.shifts.ndim == 2 and self.shifts.shape[1] == 2, "shifts")
+        _require(self.shifts.dtype == np.int64, "shifts")
+        shifted = self.shifts[:, 0]
+        _require(bool(((shifted >= 0) & (shifted < self.n_vertices)).all()), "shifts")
+        _require(not np.isin(self.aside.rows, self.dropped).any(), "a point dropped twice")
         for numbers in (cloud.scales, cloud.offsets):
             _require(numbers.shape == (3,) and bool(np.isfinite(numbers).all()), "scales")
         _require(bool((cloud.scales != 0).all()), "a scale of zero")
@@ -312,11 +427,22 @@ class PointSource:
             _require(block.ndim == 1 and block.dtype == np.uint8, "header")
         if self.corrections is not None:
             dtypes = [np.dtype(np.int32)] * 3 + [a.values.dtype for a in cloud.attributes]
-            _require(len(self.corrections) == n_columns, "ledger")
-            _require([column.dtype for column in self.corrections] == dtypes, "ledger's data types")
+            _require(len(self.corrections) == n_columns, "corrections")
+            _require(
+                [column.dtype for column in self.corrections] == dtypes,
+                "data types of the corrections",
+            )
 
 
-def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, PointSource]:
+def cloud_mesh(
+    cloud: PointCloud,
+    frame: LocalFrame,
+    *,
+    duplicates: str = "lowest",
+    max_edge: float | Literal["auto"] | None = None,
+    concave: bool = False,
+    name: str = "the cloud",
+) -> tuple[TriangleMesh, CloudOrigin]:
     """Return the Delaunay TIN of the points in the working frame, and how to come back from it.
 
     Parameters
@@ -325,40 +451,121 @@ def cloud_mesh(cloud: PointCloud, frame: LocalFrame) -> tuple[TriangleMesh, Poin
         In the file's coordinates.
     frame : LocalFrame
         From `wavelet_gis.crs.frame.working_frame`.
+    duplicates : {"lowest", "highest", "mean", "first"}
+        Which height points that share x and y have in common; all of them come back.
+    max_edge : float or "auto", optional
+        Leave faces with a longer edge out, as gaps of the cloud; in the working frame's unit,
+        which is that of x and y, or the metre for a geographic CRS. "auto" is
+        the length of `wavelet_core.mesh.gaps.gaps_of`. By default the convex hull is filled.
+    concave : bool
+        Leave out only what such edges open to the outside; with max_edge "auto" if none is given.
+    name : str
+        Of the cloud, for warnings.
 
     Raises
     ------
     InputFileError
         When a coordinate or an attribute is not finite.
     MeshError
-        When there are fewer than three points, or all lie on one line.
+        When there are fewer than three points, or all lie on one line, or no face is left.
+
+    Warns
+    -----
+    PointCloudWarning
+        How many points were merged and what that costs; gaps, and points without a face.
     """
-    vertices = frame.to_local(cloud.coordinates())
+    used = slice(None) if cloud.aside is None else ~cloud.aside
+    vertices = frame.to_local(cloud.coordinates()[used])
     if not np.isfinite(vertices).all():
         raise InputFileError(
             "the cloud has coordinates that are no finite numbers; check the scales and offsets "
             "in its header."
         )
-    merged = merge_duplicates(vertices)
-    source = PointSource.from_cloud(cloud, merged.kept, merged.representative)
+    merged, stored = merged_points(vertices, cloud.integers[used, 2], duplicates)
     kept = merged.kept
+    origin = CloudOrigin.from_cloud(cloud, kept, merged.representative, stored, duplicates)
     attributes = np.empty((len(kept), len(cloud.attributes)))
     for k, attribute in enumerate(cloud.attributes):
-        attributes[:, k] = attribute.lifted()[kept]
+        attributes[:, k] = attribute.lifted()[used][kept]
         if not np.isfinite(attributes[:, k]).all():
             raise InputFileError(
-                f"attribute {attribute.name} has values that are no finite numbers; "
-                "leave it out of --attributes."
+                "attribute {attribute} has values that are no finite numbers; leave it out of {0}.",
+                "attributes",
+                attribute=attribute.name,
             )
     names = tuple(attribute.name for attribute in cloud.attributes)
     vertices = vertices[kept]
+    if duplicates == "mean":
+        vertices[:, 2] = frame.local_z(stored * cloud.scales[2] + cloud.offsets[2])
     faces = delaunay_faces(vertices[:, :2])
-    return TriangleMesh(vertices, faces, attributes, names), source
+    gaps = gaps_of(vertices[:, :2], faces)
+    origin = replace(origin, spacing=gaps.spacing)
+    faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
+    _tell_of_merging(name, origin)
+    return TriangleMesh(vertices, faces, attributes, names), origin
+
+
+def _without_gaps(
+    name: str,
+    plan: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    gaps: PointGaps,
+    max_edge: float | Literal["auto"] | None,
+    concave: bool,
+) -> NDArray[np.int64]:
+    if max_edge is None and not concave:
+        if gaps.share > TOLD_GAPS:
+            _tell(
+                "gaps",
+                "{name}: gaps between the points take {share:.0%} of the area and are closed by "
+                "long triangles; {0} auto (here {length:.4g}) leaves them out",
+                "max_edge",
+                name=name,
+                share=gaps.share,
+                length=gaps.length,
+            )
+        return faces
+    length = gaps.length if max_edge is None or max_edge == "auto" else float(max_edge)
+    within = faces_within(plan, faces, length, from_outline=concave)
+    _tell(
+        "gaps_left_out",
+        "{name}: {n_gone} of {n_faces} triangles have an edge longer than {length:.4g} and are "
+        "left out; {n_alone} points are in no triangle then",
+        name=name,
+        n_gone=len(faces) - len(within),
+        n_faces=len(faces),
+        length=length,
+        n_alone=len(plan) - len(np.unique(within)),
+    )
+    return within
+
+
+def _tell_of_merging(name: str, origin: CloudOrigin) -> None:
+    merged = origin.merged_heights()
+    if merged.n_points:
+        _tell(
+            "merged_points",
+            "{name}: {n_points} points share x and y with others; the {rule} of each place stands "
+            "for them, up to {largest:.4g} off (root mean square {rms:.4g}) ({0})",
+            "duplicates",
+            name=name,
+            **merged._asdict(),
+        )
+
+
+def _tell(code: str, template: str, *options: str, **figures: Any) -> None:
+    warn(PointCloudWarning, code, template, *options, stacklevel=4, **figures)
+
+
+def _int32(values: NDArray[np.int64]) -> NDArray[np.int32]:
+    limits = np.iinfo(np.int32)
+    return np.clip(values, limits.min, limits.max).astype(np.int32)
 
 
 def _emptied(cloud: PointCloud) -> PointCloud:
     return replace(
         cloud,
+        aside=None,
         integers=np.empty((0, 3), np.int32),
         attributes=tuple(
             replace(a, values=np.empty(0, a.values.dtype.newbyteorder("<")))
@@ -367,17 +574,16 @@ def _emptied(cloud: PointCloud) -> PointCloud:
     )
 
 
-def _attribute(described: dict[str, Any]) -> PointAttribute:
-    dtype = np.dtype(str(described["dtype"]))
-    scale, offset = float(described["scale"]), float(described["offset"])
-    if dtype.kind not in "iuf" or not math.isfinite(scale) or scale == 0:
-        raise ValueError("an attribute that is no number")
-    component = described["component"]
+def _attribute(described: Fields) -> PointAttribute:
+    dtype = number_dtype(described.text("dtype"))
+    scale, offset = described.number("scale"), described.number("offset")
+    if scale == 0:
+        raise ValueError("an attribute with a scale of zero")
     return PointAttribute(
-        name=str(described["name"]),
-        dimension=str(described["dimension"]),
+        name=described.text("name"),
+        dimension=described.text("dimension"),
         values=np.empty(0, dtype),
-        component=None if component is None else int(component),
+        component=None if described["component"] is None else described.integer("component"),
         scale=scale,
         offset=offset,
     )

@@ -7,18 +7,28 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
+from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.exact_restore import ExactColumn, checksum, exact_column, nearest_of_dtype
+from wavelet_gis.model.exact_restore import (
+    ExactColumn,
+    checksum,
+    exact_column,
+    nearest_of_dtype,
+    number_dtype,
+)
 
-__all__ = ["Dem", "GridGeometry", "RasterSource", "dem_mesh", "grid_bounds"]
+__all__ = ["Dem", "GridGeometry", "InputGrid", "RasterOrigin", "dem_mesh", "grid_bounds"]
+
+#: Rows or columns; GDAL knows no larger rasters.
+_LARGEST_SIDE = 2**31 - 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +109,23 @@ class Dem:
         return values
 
 
+class InputGrid(NamedTuple):
+    """The grid that a pyramid was made from, each of whose cells with data is a vertex.
+
+    geometry : GridGeometry
+    valid : (n_rows, n_columns) bool, the cells with data; the i-th of them is vertex i
+    dtype : numpy dtype of the stored numbers
+    nodata : int, float or None
+    """
+
+    geometry: GridGeometry
+    valid: NDArray[np.bool_]
+    dtype: np.dtype[Any]
+    nodata: float | int | None
+
+
 @dataclass(frozen=True, slots=True)
-class RasterSource:
+class RasterOrigin:
     """How a pyramid's finest mesh becomes the DEM it was made from.
 
     Attributes
@@ -129,10 +154,12 @@ class RasterSource:
     checksum: str
 
     kind = "raster"
+    noun = "raster"
+    points = None
 
     @classmethod
-    def from_dem(cls, dem: Dem) -> RasterSource:
-        """Return the source of a DEM, before there is a pyramid (and so without corrections)."""
+    def from_dem(cls, dem: Dem) -> RasterOrigin:
+        """Return the origin of a DEM, before there is a pyramid (and so without corrections)."""
         return cls(
             geometry=dem.geometry,
             nodata=dem.nodata,
@@ -146,13 +173,13 @@ class RasterSource:
             checksum=checksum([dem.values]),
         )
 
-    def with_corrections(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterSource:
-        """Return the source that gives `dem` back exactly from the synthesised `mesh`."""
+    def with_corrections(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterOrigin:
+        """Return the origin that gives `dem` back exactly from the synthesised `mesh`."""
         approximate = self._values(mesh, frame)
         return replace(self, corrections=exact_column(dem.values[dem.valid], approximate))
 
-    def altered(self) -> RasterSource:
-        """Return the source for a pyramid whose coefficients have been changed."""
+    def altered(self) -> RasterOrigin:
+        """Return the origin for a pyramid whose coefficients have been changed."""
         return replace(self, corrections=None)
 
     @property
@@ -164,6 +191,11 @@ class RasterSource:
     def n_vertices(self) -> int:
         """Number of valid cells."""
         return int(np.count_nonzero(self.valid))
+
+    @property
+    def grid(self) -> InputGrid:
+        """The grid that came in."""
+        return InputGrid(self.geometry, self.valid, self.dtype, self.nodata)
 
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> Dem:
         """Return the DEM of the finest mesh of a pyramid.
@@ -226,36 +258,32 @@ class RasterSource:
         return fields, arrays
 
     @classmethod
-    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> RasterSource:
-        """Return the source that `to_parts` described, every claim checked.
+    def from_parts(cls, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> RasterOrigin:
+        """Return the origin that `to_parts` described, every claim checked.
 
         Raises
         ------
         PyramidError
             When a part is missing, of another type, or does not fit the rest.
         """
+        stored = Fields(fields, "the raster")
         try:
-            n_rows, n_columns = (int(n) for n in fields["shape"])
-            transform = tuple(float(value) for value in fields["transform"])
-            dtype = np.dtype(str(fields["dtype"]))
+            n_rows, n_columns = stored.integers("shape", 1, _LARGEST_SIDE)
+            transform = tuple(stored.numbers("transform", 6))
+            dtype = number_dtype(stored.text("dtype"))
             packed, holes = arrays["source/valid"], arrays["source/holes"]
-            nodata = _number(fields["nodata"])
-            scale, offset = float(fields["scale"]), float(fields["offset"])
-            profile, digest = dict(fields["profile"]), str(fields["checksum"])
+            nodata = _number(stored.text_or_none("nodata", 40))
+            scale, offset = stored.number("scale"), stored.number("offset")
+            profile, digest = dict(stored.fields("profile")), stored.text("checksum", 200)
         except (KeyError, TypeError, ValueError) as error:
             raise PyramidError(
                 f"the description of the raster is damaged ({error}); analyse the input anew."
             ) from error
         n_cells = n_rows * n_columns
         sound = (
-            n_rows > 0
-            and n_columns > 0
-            and dtype.kind in "iuf"
-            and packed.ndim == holes.ndim == 1
+            packed.ndim == holes.ndim == 1
             and packed.dtype == np.uint8
             and len(packed) == -(-n_cells // 8)
-            and len(transform) == 6
-            and all(math.isfinite(value) for value in (*transform, scale, offset))
             and transform[0] * transform[4] != transform[1] * transform[3]
             and scale != 0.0
         )
@@ -268,7 +296,9 @@ class RasterSource:
         if "ledger" in fields:
             corrections = ExactColumn.from_parts("source/ledger", fields["ledger"], arrays)
             if corrections.dtype != dtype:
-                raise PyramidError("the raster's ledger has another data type; analyse it anew.")
+                raise PyramidError(
+                    "the raster's corrections have another data type; analyse it anew."
+                )
         geometry = GridGeometry((n_rows, n_columns), transform)  # type: ignore[arg-type]
         return cls(
             geometry, nodata, scale, offset, profile, dtype, valid, holes, corrections, digest
@@ -292,8 +322,7 @@ def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
     """
     if not dem.valid.any():
         raise InputFileError(
-            "every cell of the raster is nodata, so there is no terrain in it; "
-            "check the band and the nodata value."
+            "every cell of the raster is nodata; check the band and the nodata value."
         )
     n_rows, n_columns = dem.geometry.shape
     elevation = np.zeros(dem.geometry.shape)
@@ -339,6 +368,9 @@ def _number(text: str | None) -> float | int | None:
     if text is None:
         return None
     try:
-        return int(text)
+        number = int(text)
     except ValueError:
         return float(text)
+    if not -(2**63) <= number < 2**64:
+        raise ValueError(f"a nodata value of {text}")
+    return number

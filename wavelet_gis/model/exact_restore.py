@@ -25,8 +25,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core.errors import PyramidError
+from wavelet_gis._fields import Fields
 
-__all__ = ["ExactColumn", "checksum", "exact_column", "nearest_of_dtype"]
+__all__ = ["ExactColumn", "checksum", "exact_column", "nearest_of_dtype", "number_dtype"]
+
+#: Integers and floats of up to eight bytes, little-endian.
+_NUMBER_CODES = ("|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8")
 
 #: The quantum is at least this many times the largest error seen at writing.
 SAFETY = 1024.0
@@ -70,7 +74,7 @@ class ExactColumn:
         n = len(approximate)
         if self.remainder is not None and len(self.remainder) != n:
             raise PyramidError(
-                f"the ledger holds {len(self.remainder)} remainders for {n} values; "
+                f"there are {len(self.remainder)} remainders for {n} values; "
                 "the file is damaged, write it anew."
             )
         restored = _on_grid(approximate, self.quantum, self.remainder)
@@ -78,7 +82,7 @@ class ExactColumn:
         if len(self.exception_rows):
             if self.exception_rows.min() < 0 or self.exception_rows.max() >= n:
                 raise PyramidError(
-                    f"the ledger names a row beyond the {n} there are; "
+                    f"the corrections name a row beyond the {n} there are; "
                     "the file is damaged, write it anew."
                 )
             column[self.exception_rows] = self.exception_values
@@ -105,18 +109,19 @@ class ExactColumn:
         PyramidError
             When a part is missing or of another type than it must be.
         """
+        stored = Fields(fields, f"the ledger of {name}")
+        quantum = stored.number("quantum")
         try:
-            dtype, quantum = _number_dtype(fields["dtype"]), float(fields["quantum"])
-        except (KeyError, TypeError, ValueError) as error:
+            dtype = number_dtype(stored.text("dtype"))
+        except ValueError as error:
             raise PyramidError(
-                f"the ledger of {name} is damaged ({error}); write the file anew."
+                f"the correction {name} is damaged ({error}); write the file anew."
             ) from error
         remainder = arrays.get(f"{name}/remainder")
         rows = arrays.get(f"{name}/exception_rows", np.empty(0, np.int64))
         values = arrays.get(f"{name}/exception_values", np.empty(0, dtype))
         sound = (
-            math.isfinite(quantum)
-            and quantum > 0
+            quantum > 0
             and (remainder is None or (remainder.ndim == 1 and remainder.dtype == np.float64))
             and rows.ndim == values.ndim == 1
             and rows.dtype == np.int64
@@ -124,7 +129,7 @@ class ExactColumn:
             and len(rows) == len(values)
         )
         if not sound:
-            raise PyramidError(f"the ledger of {name} is damaged; write the file anew.")
+            raise PyramidError(f"the correction {name} is damaged; write the file anew.")
         return cls(dtype, quantum, remainder, rows, values)
 
 
@@ -213,8 +218,14 @@ def _bits(column: NDArray[Any]) -> NDArray[Any]:
     return np.ascontiguousarray(column).view(f"u{column.dtype.itemsize}")
 
 
-def _number_dtype(text: object) -> np.dtype[Any]:
-    dtype = np.dtype(str(text))
-    if dtype.kind not in "iuf" or dtype.itemsize > 8:
-        raise ValueError(f"data type {text!r}")
-    return dtype
+def number_dtype(text: str) -> np.dtype[Any]:
+    """Return the data type of a code such as ``<f4``, of those that a pyramid file may name.
+
+    Raises
+    ------
+    ValueError
+        Any other text, of which numpy would make something.
+    """
+    if text not in _NUMBER_CODES:
+        raise ValueError(f"data type {text[:20]!r}")
+    return np.dtype(text)

@@ -2,35 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import Pyramid, TriangleMesh
-from wavelet_core.accuracy.level_errors import LevelErrors, level_errors
+from wavelet_core import Progress, Pyramid, TriangleMesh
+from wavelet_core.metrics import LevelErrors, level_errors
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
-from wavelet_gis.model.cloud import PointCloud
-from wavelet_gis.model.cloud_origin import PointSource
-from wavelet_gis.model.dem import Dem, RasterSource
+from wavelet_gis.model.mesh_origin import mesh_in_file
+from wavelet_gis.model.origin import Origin, Original
+from wavelet_gis.notes import Note
 
-__all__ = ["GeoPyramid", "MeshSource", "Source"]
-
-
-@dataclass(frozen=True, slots=True)
-class MeshSource:
-    """The source of a pyramid that was made from a TIN: its finest mesh is all there is."""
-
-    kind = "tin"
-    is_exact = False
-
-    def altered(self) -> MeshSource:
-        """Return the source for a pyramid whose coefficients have been changed."""
-        return self
-
-
-Source = RasterSource | PointSource | MeshSource
+__all__ = ["GeoPyramid"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,32 +31,39 @@ class GeoPyramid:
         From the input's coordinates to the working frame.
     vertical_unit : str
         Unit of z in the input.
-    source : RasterSource, PointSource or MeshSource
+    origin : Origin
         How the finest mesh becomes the input again.
     source_name : str
         The input's file name.
     errors : tuple of LevelErrors, or None
-        Size and errors of each level, the finest first, in the input's unit of z.
+        Size and errors of each level, the coarsest first, in the input's unit of z.
     history : tuple of str
         One line for each change since the analysis (filters).
+    notes : tuple of Note
+        What was worth telling about the input and its analysis.
     """
 
     pyramid: Pyramid
     system: CoordinateSystem
     frame: LocalFrame
     vertical_unit: str
-    source: Source
+    origin: Origin
     source_name: str
     errors: tuple[LevelErrors, ...] | None = None
     history: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
-    def with_errors(self, progress: Callable[[float], bool | None] | None = None) -> GeoPyramid:
+    def with_errors(
+        self, progress: Progress | None = None, finest: TriangleMesh | None = None
+    ) -> GeoPyramid:
         """Return the pyramid with the errors of every level computed.
 
         Parameters
         ----------
         progress : callable, optional
             Called with a fraction in [0, 1]; returning False stops with `Cancelled`.
+        finest : TriangleMesh, optional
+            The pyramid's finest mesh, where it has been synthesised already.
         """
         unit = self.frame.z_scale
         levels = (
@@ -80,9 +71,13 @@ class GeoPyramid:
                 rmse_surface=level.rmse_surface / unit,
                 max_error_surface=level.max_error_surface / unit,
             )
-            for level in level_errors(self.pyramid, progress)
+            for level in level_errors(self.pyramid, progress, finest)
         )
         return replace(self, errors=tuple(levels))
+
+    def errors_at(self, level: int) -> LevelErrors | None:
+        """Return the errors of a level; None where they were not measured."""
+        return next((errors for errors in self.errors or () if errors.level == level), None)
 
     def with_pyramid(self, pyramid: Pyramid, change: str) -> GeoPyramid:
         """Return the pyramid of an altered pyramid, which no longer gives the exact input.
@@ -97,31 +92,30 @@ class GeoPyramid:
         return replace(
             self,
             pyramid=pyramid,
-            source=self.source.altered(),
+            origin=self.origin.altered(),
             errors=None,
             history=(*self.history, change),
         )
 
-    def restore(self) -> Dem | PointCloud | TriangleMesh:
+    def restore(self, finest: TriangleMesh | None = None) -> Original:
         """Return what the pyramid was made from; of an altered pyramid, its altered form.
+
+        Parameters
+        ----------
+        finest : TriangleMesh, optional
+            The pyramid's finest mesh, where it has been synthesised already.
 
         Raises
         ------
         PyramidError
             When the exact original was due and did not come out.
         """
-        finest = self.pyramid.synthesise()
-        if isinstance(self.source, MeshSource):
-            return self.file_mesh(finest)
-        return self.source.restore(finest, self.frame)
+        mesh = self.pyramid.synthesise() if finest is None else finest
+        return self.origin.restore(mesh, self.frame)
 
     def file_mesh(self, mesh: TriangleMesh) -> TriangleMesh:
         """Return a mesh of the pyramid in the coordinates of the input."""
-        if self.frame.is_identity:
-            return mesh
-        return TriangleMesh(
-            self.frame.to_file(mesh.vertices), mesh.faces, mesh.attributes, mesh.attribute_names
-        )
+        return mesh_in_file(mesh, self.frame)
 
     def file_details(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return detail vectors with their elevations in the input's unit of z.
@@ -132,5 +126,5 @@ class GeoPyramid:
         if self.frame.z_scale == 1.0:
             return vectors
         scaled = vectors.copy()
-        scaled[:, 0 if self.pyramid.signal == "z" else 2] /= self.frame.z_scale
+        scaled[:, self.pyramid.channels.index("z")] /= self.frame.z_scale
         return scaled

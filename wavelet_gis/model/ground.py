@@ -53,8 +53,11 @@ def height_above_ground(
     n_ground = int(np.count_nonzero(is_ground))
     if n_ground < 3:
         raise InputFileError(
-            f"height above ground needs points of class {GROUND_CLASS} (ground), and there are "
-            f"{n_ground}; classify the ground first, or leave hag out of --attributes."
+            "height above ground needs points of class {ground} (ground), and there are "
+            "{n_ground}; classify the ground first, or leave hag out of {0}.",
+            "attributes",
+            ground=GROUND_CLASS,
+            n_ground=n_ground,
         )
     # Heights do not change with the origin; differences of small numbers keep their digits.
     origin = np.array([*coordinates[:, :2].min(axis=0), 0.0])

@@ -1,23 +1,30 @@
-"""From a DEM or a cloud to the mesh that is analysed, and to all that is needed to come back."""
+"""From a DEM, a cloud or a TIN to the mesh that is analysed, and to all needed to come back."""
 
 from __future__ import annotations
 
-import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
-from wavelet_core import MeshError, Pyramid, TriangleMesh
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import MeshError, Pyramid, TriangleMesh, WaveletError
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
 from wavelet_gis.model.cloud import PointCloud, cloud_bounds
-from wavelet_gis.model.cloud_origin import PointSource, cloud_mesh
-from wavelet_gis.model.dem import Dem, RasterSource, dem_mesh, grid_bounds
+from wavelet_gis.model.cloud_origin import cloud_mesh
+from wavelet_gis.model.dem import Dem, RasterOrigin, dem_mesh, grid_bounds
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.model.origin import Origin, Original
+from wavelet_gis.notes import Note, collected, note, warn
 
 __all__ = [
     "Terrain",
     "frame_of_bounds",
     "terrain_of_cloud",
     "terrain_of_dem",
+    "terrain_of_mesh",
 ]
 
 
@@ -31,9 +38,9 @@ class Terrain:
         Of the file, for messages and metadata.
     mesh : TriangleMesh
         In the working frame.
-    original : Dem or PointCloud
+    original : Dem, PointCloud or TriangleMesh
         As it came.
-    source : RasterSource or PointSource
+    origin : Origin
         How to come back; without corrections until there is a pyramid.
     system : CoordinateSystem
         The CRS.
@@ -41,31 +48,59 @@ class Terrain:
         Between the file's coordinates and those of the mesh.
     vertical_unit : str
         Unit of z in the file.
+    notes : tuple of Note
+        What is worth telling about it.
     """
 
     name: str
     mesh: TriangleMesh
-    original: Dem | PointCloud
-    source: RasterSource | PointSource
+    original: Original
+    origin: Origin
     system: CoordinateSystem
     frame: LocalFrame
     vertical_unit: str
+    notes: tuple[Note, ...] = ()
 
-    def geo_pyramid(self, pyramid: Pyramid) -> GeoPyramid:
-        """Return the pyramid with everything that its file must hold.
+    def points_for_errors(self) -> NDArray[np.float64]:
+        """Return every input point of the surface in the working frame, merged ones too."""
+        points = self.origin.points
+        if points is None:
+            return self.mesh.vertices
+        return points.points_for_errors(self.mesh, self.frame)
 
-        The finest mesh is synthesised once, to keep what rounding loses.
+    def with_notes(self, notes: list[Note]) -> Terrain:
+        """Return the terrain with these notes instead of its own."""
+        return replace(self, notes=tuple(notes))
+
+    def uncorrected(self, pyramid: Pyramid) -> GeoPyramid:
+        """Return the pyramid at its place, not yet fit to give the input back exactly.
+
+        For what is taken from a pyramid that nobody keeps.
         """
-        finest = pyramid.synthesise()
-        source = self.source.with_corrections(self.original, finest, self.frame)  # type: ignore[arg-type]
         return GeoPyramid(
             pyramid=pyramid,
             system=self.system,
             frame=self.frame,
             vertical_unit=self.vertical_unit,
-            source=source,
+            origin=self.origin,
             source_name=self.name,
+            notes=self.notes,
         )
+
+    def geo_pyramid(self, pyramid: Pyramid, finest: TriangleMesh | None = None) -> GeoPyramid:
+        """Return the pyramid with everything that its file must hold.
+
+        Parameters
+        ----------
+        pyramid : Pyramid
+            Of the terrain's mesh.
+        finest : TriangleMesh, optional
+            Its finest mesh, where it has been synthesised already; else it is here, to keep what
+            rounding loses.
+        """
+        mesh = pyramid.synthesise() if finest is None else finest
+        origin = self.origin.with_corrections(self.original, mesh, self.frame)
+        return replace(self.uncorrected(pyramid), origin=origin)
 
 
 def terrain_of_dem(
@@ -86,17 +121,18 @@ def terrain_of_dem(
     """
     if not dem.valid.any():
         raise InputFileError(
-            f"{name}: every cell of the raster is nodata, so there is no terrain in it; check the "
-            "band and the nodata value."
+            f"{name}: every cell of the raster is nodata; check the band and the nodata value."
         )
-    frame, unit = frame_of_bounds(name, system, grid_bounds(dem.geometry), vertical_unit)
+    with collected() as notes:
+        frame, unit = frame_of_bounds(name, system, grid_bounds(dem.geometry), vertical_unit)
     mesh = dem_mesh(dem, frame)
     if mesh.n_faces == 0:
         raise InputFileError(
             f"{name}: no three neighbouring cells have data, so there is no surface; check the "
             "band and the nodata value."
         )
-    return Terrain(name, mesh, dem, RasterSource.from_dem(dem), system, frame, unit)
+    origin = RasterOrigin.from_dem(dem)
+    return Terrain(name, mesh, dem, origin, system, frame, unit, tuple(notes))
 
 
 def terrain_of_cloud(
@@ -106,6 +142,9 @@ def terrain_of_cloud(
     vertical_unit: str | None = None,
     *,
     fault: str = "",
+    duplicates: str = "lowest",
+    max_edge: float | Literal["auto"] | None = None,
+    concave: bool = False,
 ) -> Terrain:
     """Return the terrain of a point cloud that is in memory already.
 
@@ -121,18 +160,67 @@ def terrain_of_cloud(
         Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
     fault : str
         Why there is no CRS, for the warning.
+    duplicates, max_edge, concave
+        See `wavelet_gis.model.cloud_origin.cloud_mesh`.
     """
-    if cloud.n_points < 3:
+    n_points = cloud.n_used
+    if n_points < 3:
         raise InputFileError(
-            f"{name}: the cloud has {cloud.n_points} point{'s' * (cloud.n_points != 1)}; a "
-            "surface needs at least three (check the file, and --classes if given)."
+            "{name}: the cloud has {points}; a surface needs at least three (check the file, and "
+            "{0} if given).",
+            "classes",
+            name=name,
+            points=f"{n_points} point{'s' * (n_points != 1)}",
         )
-    frame, unit = frame_of_bounds(name, system, cloud_bounds(cloud), vertical_unit, fault)
+    _require_plan(name, cloud, system)
     try:
-        mesh, source = cloud_mesh(cloud, frame)
+        with collected() as notes:
+            frame, unit = frame_of_bounds(name, system, cloud_bounds(cloud), vertical_unit, fault)
+            mesh, origin = cloud_mesh(
+                cloud, frame, duplicates=duplicates, max_edge=max_edge, concave=concave, name=name
+            )
     except (MeshError, InputFileError) as error:
-        raise InputFileError(f"{name}: {error}") from error
-    return Terrain(name, mesh, cloud, source, system, frame, unit)
+        raise _about(name, error, InputFileError) from error
+    return Terrain(name, mesh, cloud, origin, system, frame, unit, tuple(notes))
+
+
+def terrain_of_mesh(
+    name: str,
+    mesh: TriangleMesh,
+    system: CoordinateSystem,
+    frame: LocalFrame,
+    vertical_unit: str,
+) -> Terrain:
+    """Return the terrain of a TIN that is in its working frame already.
+
+    Parameters
+    ----------
+    name : str
+        For messages and metadata.
+    mesh : TriangleMesh
+        In the working frame.
+    system : CoordinateSystem
+        The CRS of the input.
+    frame : LocalFrame
+        Between the two, as `wavelet_gis.model.tin.frame_of_coordinates` gives it.
+    vertical_unit : str
+        Unit of z in the input.
+    """
+    return Terrain(name, mesh, mesh, MeshOrigin(), system, frame, vertical_unit)
+
+
+def _require_plan(name: str, cloud: PointCloud, system: CoordinateSystem) -> None:
+    """Refuse coordinates from the centre of the earth, where z is no height."""
+    wkt = (system.wkt or "").replace(" ", "")
+    if "GEOCCS[" not in wkt and "CS[Cartesian,3" not in wkt:
+        return
+    middle = cloud.coordinates()[: 1 << 20].mean(axis=0)
+    if 6.2e6 < float(np.linalg.norm(middle)) < 6.5e6:
+        raise CrsError(
+            f"{name}: {system.name} is geocentric, x, y and z are from the centre of the earth and "
+            "z is no height; reproject the points to a projected CRS first (for instance with "
+            "PDAL's filters.reprojection)."
+        )
 
 
 def frame_of_bounds(
@@ -160,7 +248,7 @@ def frame_of_bounds(
     Raises
     ------
     CrsError
-        When the CRS or its extent cannot serve.
+        When the CRS or its extent cannot be used.
 
     Warns
     -----
@@ -170,14 +258,38 @@ def frame_of_bounds(
     try:
         frame = working_frame(system, bounds, vertical_unit)
     except CrsError as error:
-        raise CrsError(f"{name}: {error}") from error
+        raise _about(name, error, CrsError) from error
     if system.wkt is None:
         what = f"the CRS is broken ({fault})" if fault else "there is no CRS"
-        _warn(f"{name}: {what}; x, y and z are taken as they are (give one with --crs)")
+        warn(
+            CrsWarning,
+            "crs_missing",
+            "{name}: {what}; x, y and z are taken as they are (give one with {0})",
+            "crs",
+            stacklevel=3,
+            name=name,
+            what=what,
+        )
     elif system.kind == "unknown":
-        _warn(
-            f"{name}: the CRS {system.name!r} is neither geographic nor projected; x, y and z are "
-            "taken as they are (give another with --crs)"
+        warn(
+            CrsWarning,
+            "crs_of_unknown_kind",
+            "{name}: the CRS {crs!r} is neither geographic nor projected; x, y and z are taken as "
+            "they are (give another with {0})",
+            "crs",
+            stacklevel=3,
+            name=name,
+            crs=system.name,
+        )
+    elif system.kind == "geographic":
+        note(
+            "local_metric_frame",
+            "{crs} is geographic: working in a local metric frame, {metres_east:.1f} m a unit of "
+            "longitude and {metres_north:.1f} m of latitude; results stay in the input's "
+            "coordinates",
+            crs=system.name,
+            metres_east=frame.x_scale,
+            metres_north=frame.y_scale,
         )
     unit = vertical_unit or system.vertical_unit
     if unit is None:
@@ -185,14 +297,20 @@ def frame_of_bounds(
     else:
         unit = vertical_unit_name(unit)
     if frame.z_scale != 1.0 and abs(frame.z_scale - 1.0) > 1e-5:
-        warnings.warn(
-            f"{name}: z is in {unit.replace('_', ' ')} and is converted to the unit of the "
-            "horizontal plane while working; results are in the file's units",
+        warn(
             UnitWarning,
+            "vertical_unit_converted",
+            "{name}: z is in {unit} and is converted to the unit of the horizontal plane while "
+            "working; results are in the file's units",
             stacklevel=3,
+            name=name,
+            unit=unit.replace("_", " "),
         )
     return frame, unit
 
 
-def _warn(message: str) -> None:
-    warnings.warn(message, CrsWarning, stacklevel=4)
+def _about(name: str, error: WaveletError, kind: type[WaveletError]) -> WaveletError:
+    """Return the error with the name of the input before it, its parameters still told apart."""
+    if not error.options and not error.values:
+        return kind(f"{name}: {error}")
+    return kind("{name}: " + error.template, *error.options, name=name, **error.values)

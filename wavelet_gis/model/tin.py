@@ -9,19 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from wavelet_core import Pyramid, TriangleMesh
+from wavelet_core import TriangleMesh
 from wavelet_core.errors import MeshError
 from wavelet_core.mesh.location import surface_errors
 from wavelet_core.mesh.triangulation import Merged, delaunay_faces, merge_duplicates
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
-from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource
-from wavelet_gis.model.terrain import frame_of_bounds
+from wavelet_gis.errors import InputFileError
+from wavelet_gis.model.terrain import Terrain, frame_of_bounds, terrain_of_mesh
+from wavelet_gis.notes import collected, note
 
 __all__ = [
     "ConstrainedTin",
-    "TinTerrain",
     "frame_of_coordinates",
     "mesh_of_corners",
+    "terrain_of_points",
+    "terrain_of_triangles",
     "tin_with_lines",
 ]
 
@@ -35,11 +37,13 @@ class ConstrainedTin(NamedTuple):
 
     mesh : TriangleMesh
     is_on_line : (n_vertices,) bool, the vertices of the breaklines
+    is_on_outline : (n_vertices,) bool, the vertices of the outline
     is_marked : (n_vertices,) bool, the points that were marked
     """
 
     mesh: TriangleMesh
     is_on_line: BoolArray
+    is_on_outline: BoolArray
     is_marked: BoolArray
 
 
@@ -96,6 +100,8 @@ def tin_with_lines(
     edges = _edges_of(lines, n_points, merged.representative)
     on_line = np.zeros(len(vertices), dtype=bool)
     on_line[n_points : n_points + n_breakline] = True
+    on_outline = np.zeros(len(vertices), dtype=bool)
+    on_outline[n_points + n_breakline :] = True
     marked = np.zeros(len(vertices), dtype=bool)
     if is_marked is not None:
         marked[:n_points] = is_marked
@@ -110,6 +116,7 @@ def tin_with_lines(
     return ConstrainedTin(
         mesh,
         _any_of(on_line, merged.representative, count),
+        _any_of(on_outline, merged.representative, count),
         _any_of(marked, merged.representative, count),
     )
 
@@ -144,34 +151,6 @@ def mesh_of_corners(corners: FloatArray) -> TriangleMesh:
     return TriangleMesh.from_triangles(vertices, faces[~is_flat])
 
 
-class TinTerrain(NamedTuple):
-    """A TIN in its working frame, ready to be analysed; the counterpart of `terrain.Terrain`.
-
-    name : str
-    mesh : TriangleMesh
-    system : CoordinateSystem
-    frame : LocalFrame
-    vertical_unit : str
-    """
-
-    name: str
-    mesh: TriangleMesh
-    system: CoordinateSystem
-    frame: LocalFrame
-    vertical_unit: str
-
-    def geo_pyramid(self, pyramid: Pyramid) -> GeoPyramid:
-        """Return the pyramid with everything that its file must hold."""
-        return GeoPyramid(
-            pyramid=pyramid,
-            system=self.system,
-            frame=self.frame,
-            vertical_unit=self.vertical_unit,
-            source=MeshSource(),
-            source_name=self.name,
-        )
-
-
 def frame_of_coordinates(
     name: str, coordinates: FloatArray, system: CoordinateSystem, vertical_unit: str | None = None
 ) -> tuple[LocalFrame, str]:
@@ -193,7 +172,7 @@ def frame_of_coordinates(
     MeshError
         When there is not one point.
     CrsError
-        When the CRS or its extent cannot serve.
+        When the CRS or its extent cannot be used.
     """
     if len(coordinates) == 0:
         raise MeshError(
@@ -201,6 +180,90 @@ def frame_of_coordinates(
         )
     low, high = coordinates.min(axis=0), coordinates.max(axis=0)
     return frame_of_bounds(name, system, (low[0], low[1], high[0], high[1]), vertical_unit)
+
+
+def terrain_of_points(
+    name: str,
+    points: FloatArray,
+    attributes: FloatArray,
+    attribute_names: Sequence[str],
+    system: CoordinateSystem,
+    vertical_unit: str | None = None,
+) -> Terrain:
+    """Return the terrain of points that are in memory already: their Delaunay TIN.
+
+    Parameters
+    ----------
+    name : str
+        For messages and metadata.
+    points : ndarray, shape (n_points, 3)
+        x, y, z in the CRS.
+    attributes : ndarray, shape (n_points, n_attributes)
+        Lifted along with z.
+    attribute_names : sequence of str
+        One name an attribute.
+    system : CoordinateSystem
+        The CRS.
+    vertical_unit : str, optional
+        Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
+
+    Raises
+    ------
+    InputFileError
+        Numbers that are not finite.
+    MeshError
+        Fewer than three points, or all of them on one line.
+    """
+    if not (np.isfinite(points).all() and np.isfinite(attributes).all()):
+        raise InputFileError(
+            f"{name}: some coordinates or attributes are no finite numbers; leave those points out."
+        )
+    with collected() as notes:
+        frame, unit = frame_of_coordinates(name, points, system, vertical_unit)
+        try:
+            mesh = TriangleMesh.from_points(frame.to_local(points), attributes, attribute_names)
+        except MeshError as error:
+            raise MeshError(f"{name}: {error}", error.index) from error
+        n_merged = len(points) - mesh.n_vertices
+        if n_merged:
+            note(
+                "points_merged",
+                "{name}: {n_merged:,} points share x and y with another; the lowest stands for all",
+                name=name,
+                n_merged=n_merged,
+            )
+    return terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
+
+
+def terrain_of_triangles(
+    name: str,
+    corners: FloatArray,
+    system: CoordinateSystem,
+    vertical_unit: str | None = None,
+) -> Terrain:
+    """Return the terrain of triangles that are in memory already.
+
+    Parameters
+    ----------
+    name : str
+        For messages and metadata.
+    corners : ndarray, shape (n_faces, 3, 3)
+        Face, corner, x y z, in the CRS.
+    system : CoordinateSystem
+        The CRS.
+    vertical_unit : str, optional
+        Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
+
+    Raises
+    ------
+    MeshError
+        No triangle, or triangles that are no surface.
+    """
+    flat = corners.reshape(-1, 3)
+    with collected() as notes:
+        frame, unit = frame_of_coordinates(name, flat, system, vertical_unit)
+    mesh = mesh_of_corners(frame.to_local(flat).reshape(corners.shape))
+    return terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
 
 
 def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:

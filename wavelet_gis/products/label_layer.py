@@ -10,7 +10,7 @@ from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.styles import quoted
 from wavelet_gis.products.wkb import points_wkb
 
-__all__ = ["label_layer"]
+__all__ = ["label_colour", "label_layer"]
 
 #: Okabe and Ito's colours, told apart by most eyes; labels beyond them start again.
 _COLOURS = [
@@ -36,6 +36,20 @@ _CLASS_COLOURS = {
 }
 
 
+def label_colour(label: int, name: str = "cluster") -> tuple[int, int, int]:
+    """Return red, green and blue of a label, the same wherever it is shown.
+
+    Parameters
+    ----------
+    label : int
+        A cluster's number, or an ASPRS class.
+    name : {"cluster", "class"}
+        What it is.
+    """
+    by_custom = _CLASS_COLOURS if name == "class" else {}
+    return by_custom.get(label, _COLOURS[label % len(_COLOURS)])
+
+
 def label_layer(
     geo: GeoPyramid,
     labels: NDArray[np.int64],
@@ -57,7 +71,6 @@ def label_layer(
     """
     mesh = geo.pyramid.synthesise()
     plural = {"cluster": "clusters", "class": "classes"}[name]
-    colours = _CLASS_COLOURS if name == "class" else {}
     return Layer(
         plural,
         "Point Z",
@@ -67,16 +80,16 @@ def label_layer(
             name: labels.astype(np.int32),
             "confidence": np.asarray(confidence, dtype=np.float64),
         },
-        _style(name, np.unique(labels).tolist(), colours),
+        _style(name, np.unique(labels).tolist()),
         f"Vertices by {name}",
         "One input vertex a row, with how clearly it belongs there",
     )
 
 
-def _style(field: str, labels: list[int], colours: dict[int, tuple[int, int, int]]) -> str:
+def _style(field: str, labels: list[int]) -> str:
     categories, symbols = [], []
     for k, label in enumerate(labels):
-        red, green, blue = colours.get(label, _COLOURS[label % len(_COLOURS)])
+        red, green, blue = label_colour(label, field)
         categories.append(
             f'<category symbol="{k}" value="{label}" label="{field} {label}" render="true" '
             'type="integer"/>'

@@ -6,9 +6,10 @@ import numpy as np
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
-from wavelet_gis.model.dem import Dem, GridGeometry, RasterSource
+from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.rasterise import geometry_over, rasterise
+from wavelet_gis.products.vertex_raster import point_cell_size
 
 __all__ = ["surface_dem", "surface_difference"]
 
@@ -30,7 +31,8 @@ def surface_dem(
         In the working frame.
     cell_size : float, optional
         Of a grid over the mesh, in the input's unit of x and y. By default the grid of the raster
-        that the pyramid was made from; without one, the mean spacing of the mesh's vertices.
+        that the pyramid was made from, or the spacing of its points; without either, the mean
+        spacing of the mesh's vertices.
     attribute : str, optional
         What to evaluate instead of the elevation.
 
@@ -47,33 +49,40 @@ def surface_dem(
     """
     in_file = geo.file_mesh(mesh)
     values = _attribute_values(in_file, attribute) if attribute else None
-    source = geo.source if isinstance(geo.source, RasterSource) else None
-    if source is not None and not cell_size:
-        geometry = source.geometry
+    given = geo.origin.grid
+    if given is not None and not cell_size:
+        geometry = given.geometry
     else:
-        geometry = _geometry(in_file, cell_size)
+        geometry = _geometry(in_file, cell_size or point_cell_size(geo))
     grid = rasterise(in_file, geometry, values)
-    if source is None or source.dtype != np.float64:
+    if given is None or given.dtype != np.float64:
         grid = grid.astype(np.float32)
     covered = np.isfinite(grid)
     tag = float("nan")
-    if source is not None and source.nodata is not None:
+    if given is not None and given.nodata is not None:
         largest = float(np.finfo(grid.dtype).max)
-        tag = float(source.nodata) if abs(float(source.nodata)) <= largest else tag
+        tag = float(given.nodata) if abs(float(given.nodata)) <= largest else tag
     grid[~covered] = tag
     profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
     return Dem(grid, covered, geometry, tag, profile=profile)
 
 
-def surface_difference(before: GeoPyramid, after: GeoPyramid) -> Dem:
+def surface_difference(
+    before: GeoPyramid,
+    after: GeoPyramid,
+    finest: tuple[TriangleMesh, TriangleMesh] | None = None,
+) -> Dem:
     """Return the finest surface of one pyramid minus that of another, on the grid of their raster.
 
     Parameters
     ----------
     before, after : GeoPyramid
-        Of the same raster: a pyramid, and the same one filtered.
+        Of the same raster: a pyramid, and the same one filtered; ``after`` less ``before``.
+    finest : (TriangleMesh, TriangleMesh), optional
+        Their finest meshes, where they have been synthesised already.
     """
-    old, new = (surface_dem(geo, geo.pyramid.synthesise()) for geo in (before, after))
+    meshes = finest or (before.pyramid.synthesise(), after.pyramid.synthesise())
+    old, new = map(surface_dem, (before, after), meshes)
     valid = old.valid & new.valid
     values = np.where(valid, new.values - old.values, np.float32("nan")).astype(np.float32)
     return Dem(values, valid, old.geometry, float("nan"), profile=old.profile)

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.dem import GridGeometry, RasterSource
+from wavelet_gis.model.dem import GridGeometry
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.rasterise import geometry_over, rasterise
 
-__all__ = ["Bands", "grid_of", "label_band", "value_bands", "write_bands"]
+__all__ = ["Bands", "grid_of", "label_band", "point_cell_size", "value_bands", "write_bands"]
 
 #: Stored in cells without a label.
 NO_LABEL = 255
@@ -56,15 +56,29 @@ def grid_of(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None = None)
     mesh : TriangleMesh
         In the working frame.
     cell_size : float, optional
-        In the input's unit of x and y; by default, for points, their mean spacing.
+        In the input's unit of x and y; by default, for points, their spacing.
     """
-    if isinstance(geo.source, RasterSource) and cell_size is None:
-        return geo.source.geometry
+    if geo.origin.grid is not None and cell_size is None:
+        return geo.origin.grid.geometry
     vertices = geo.frame.to_file(mesh.vertices)
     (x_min, y_min, _), (x_max, y_max, _) = vertices.min(axis=0), vertices.max(axis=0)
     if cell_size is None:
+        cell_size = point_cell_size(geo)
+    if cell_size is None:
         cell_size = float(np.sqrt((x_max - x_min) * (y_max - y_min) / max(len(vertices), 1)))
     return geometry_over((x_min, y_min, x_max, y_max), cell_size)
+
+
+def point_cell_size(geo: GeoPyramid) -> float | None:
+    """Return the spacing of the points that a pyramid was made from, in the input's unit.
+
+    None where it was made from something else. Gaps of the cloud do not count: a hull that they
+    take half of would give cells that each hold two points.
+    """
+    points = geo.origin.points
+    if points is None or points.spacing is None:
+        return None
+    return float(points.spacing / np.sqrt(geo.frame.x_scale * geo.frame.y_scale))
 
 
 def value_bands(
@@ -192,7 +206,7 @@ def _valid_cells(
     geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None
 ) -> NDArray[np.bool_] | None:
     """Return the cells of the input's own grid, if they are the vertices of the mesh one by one."""
-    source = geo.source
-    if not isinstance(source, RasterSource) or cell_size is not None:
+    grid = geo.origin.grid
+    if grid is None or cell_size is not None:
         return None
-    return source.valid if mesh.n_vertices == source.n_vertices else None
+    return grid.valid if mesh.n_vertices == geo.origin.n_vertices else None

@@ -5,15 +5,20 @@ Arrays and layers only; files are written by `wavelet_gis.io`, or by QGIS.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
-from wavelet_core.features.shape import SHAPE_NAMES, surface_shape
-from wavelet_core.features.spectrum import STAYS, band_components, band_energies, vertex_details
-from wavelet_core.lifting.spacings import level_spacings
+from wavelet_core import (
+    SHAPE_NAMES,
+    STAYS,
+    Progress,
+    TriangleMesh,
+    band_components,
+    band_energies,
+    level_spacings,
+    surface_shape,
+    vertex_details,
+)
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.styles import detail_style, vertex_style
@@ -27,8 +32,6 @@ __all__ = [
     "shape_layer",
     "vertex_layer",
 ]
-
-Progress = Callable[[float], bool | None]
 FloatArray = NDArray[np.float64]
 
 
@@ -186,5 +189,5 @@ def shape_layer(geo: GeoPyramid, level: int) -> Layer:
 
 def _file_scale(geo: GeoPyramid, channel: str | None) -> float:
     """Working units in one of the file's, for a channel."""
-    is_height = channel == "z" or (channel is None and geo.pyramid.signal == "z")
+    is_height = channel == "z" or (channel is None and geo.pyramid.coordinates == ("z",))
     return geo.frame.z_scale if is_height else 1.0

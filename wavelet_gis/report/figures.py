@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -11,15 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
-from wavelet_core.errors import Cancelled, OptionError
-from wavelet_core.features.shape import surface_shape
-from wavelet_core.mesh.location import surface_errors
+from wavelet_core import OptionError, Progress, TriangleMesh, surface_shape
+from wavelet_core.metrics import surface_errors
+from wavelet_core.progress import report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["ReportData", "chosen_levels", "report_data", "triangle_quality"]
-
-Progress = Callable[[float], bool | None]
 FloatArray = NDArray[np.float64]
 
 #: Triangles with an angle below this are called slivers, in degrees.
@@ -89,13 +86,14 @@ def report_data(
             raise OptionError(f"there is no level {level}; they are 0 to {pyramid.n_levels}.")
     finest = pyramid.synthesise()
     rows, shown, errors = [], {pyramid.n_levels: finest}, {}
-    for level, mesh in pyramid.meshes():
+    for level, mesh in enumerate(pyramid):
         distance = surface_errors(mesh, finest.vertices) / geo.frame.z_scale
         rows.append(_level_row(geo, level, mesh, finest, distance))
         if level in chosen:
             shown[level], errors[level] = mesh, distance
-        if progress is not None and progress((level + 1) / (pyramid.n_levels + 1)) is False:
-            raise Cancelled("the report was cancelled; nothing was written.")
+        report(
+            progress, (level + 1) / len(pyramid), "the report was cancelled; nothing was written."
+        )
     figures = {
         "source": _source_figures(geo, finest),
         "levels": rows[::-1],
@@ -103,6 +101,7 @@ def report_data(
         "shown": [_error_figures(geo, finest, level, errors[level]) for level in chosen],
         "parameters": dict(pyramid.parameters),
         "history": list(geo.history),
+        "notes": [note.to_dict() for note in geo.notes],
         "versions": _versions(),
     }
     return ReportData(figures, shown, {level: errors[level] for level in chosen})
@@ -268,8 +267,8 @@ def _source_figures(geo: GeoPyramid, finest: TriangleMesh) -> dict[str, Any]:
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     return {
         "name": geo.source_name.replace("\\", "/").rsplit("/", 1)[-1],
-        "kind": geo.source.kind,
-        "is_exact": bool(geo.source.is_exact),
+        "kind": geo.origin.kind,
+        "is_exact": bool(geo.origin.is_exact),
         "n_vertices": finest.n_vertices,
         "n_faces": finest.n_faces,
         "n_levels": geo.pyramid.n_levels,

@@ -5,9 +5,10 @@ from __future__ import annotations
 import html
 import json
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
+from wavelet_core import Progress
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.report.figures import ReportData, report_data
 from wavelet_gis.report.pictures import (
@@ -20,8 +21,6 @@ from wavelet_gis.report.pictures import (
 )
 
 __all__ = ["report_page"]
-
-Progress = Callable[[float], bool | None]
 
 
 def report_page(
@@ -324,6 +323,9 @@ def _parameters(figures: dict[str, Any]) -> str:
     if figures["history"]:
         changes = "".join(f"<li>{html.escape(change)}</li>" for change in figures["history"])
         parts.append(f"<h3>Changes since the analysis</h3><ul>{changes}</ul>")
+    if figures["notes"]:
+        notes = "".join(f"<li>{html.escape(note['text'])}</li>" for note in figures["notes"])
+        parts.append(f"<h3>Notes on the input and its analysis</h3><ul>{notes}</ul>")
     return '<div class="made">' + "".join(parts) + "</div>"
 
 

@@ -212,8 +212,8 @@ def cluster_summary(
     Returns
     -------
     dict
-        ``spacings``: of the bands, the coarsest level first; ``clusters``: for each label
-        ``n_vertices``, ``share`` and ``rms``, the root mean square detail in each band in the
+        ``spacings``: of the levels' details, the coarsest first; ``clusters``: for each label
+        ``n_vertices``, ``share`` and ``rms``, the root mean square detail of each level in the
         unit of the input, and ``relative``, that over the one of all vertices.
     """
     squared = energy_columns(geo, channel) ** 2

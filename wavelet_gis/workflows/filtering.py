@@ -1,27 +1,191 @@
-"""Filtering of a pyramid in the units of its input: noise taken out, scales changed."""
+"""Pyramid to filtered pyramid, in the units of its input: noise taken out, scales changed."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from wavelet_core import denoise
-from wavelet_core.filtering.gains import band_gains, channel_index, check_level, relifted
-from wavelet_core.filtering.noise import channel_noise
+from wavelet_core import OptionError, Progress, Pyramid, TriangleMesh, band_gains, denoise, relifted
+from wavelet_core.filtering.gains import channel_index
+from wavelet_core.filtering.noise import estimate_noise
+from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
+from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.progress import part_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
+from wavelet_gis.workflows.save import Layers, write_pyramid_file
 
-__all__ = ["change_between", "chosen_gains", "denoised_record", "scaled_record"]
+__all__ = ["Filtered", "chosen_gains", "denoised", "filter_pyramid", "with_level_gains"]
 
-Progress = Callable[[float], bool | None]
+#: How many pyramids in random order denoising averages.
+N_PYRAMIDS = 8
 
 
-def denoised_record(
+@dataclass(frozen=True, slots=True)
+class Filtered:
+    """A filtered pyramid.
+
+    Attributes
+    ----------
+    before, geo : GeoPyramid
+        As it was given, and filtered.
+    finest_before, finest : TriangleMesh
+        Their finest meshes, in the working frame.
+    sigmas : dict of str to float
+        Standard deviation of the noise taken out of each channel, in the input's unit.
+    gains : dict of int to float
+        What the details of each level were multiplied by; levels that are not listed stayed.
+    n_pyramids : int or None
+        How many pyramids denoising averaged; None where no noise was taken out.
+    """
+
+    before: GeoPyramid
+    geo: GeoPyramid
+    finest_before: TriangleMesh
+    finest: TriangleMesh
+    sigmas: dict[str, float]
+    gains: dict[int, float] | None
+    n_pyramids: int | None
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """One line for each thing that was done."""
+        return self.geo.history[len(self.before.history) :]
+
+    def change(self) -> tuple[float, float]:
+        """Return root mean square and largest change of z, in the input's unit."""
+        moved = self.finest.vertices[:, 2] - self.finest_before.vertices[:, 2]
+        moved = moved / self.before.frame.z_scale
+        rms = float(np.sqrt(np.mean(moved**2))) if len(moved) else 0.0
+        return rms, float(np.abs(moved).max(initial=0.0))
+
+    def restored(self) -> Reconstruction:
+        """Return the filtered form of what the pyramid was made from."""
+        return reconstruct(self.geo, finest=self.finest)
+
+    def difference(self) -> Dem:
+        """Return the filtered DEM minus the original one, for a pyramid of a raster."""
+        from wavelet_gis.products.level_raster import surface_difference
+
+        return surface_difference(self.before, self.geo, (self.finest_before, self.finest))
+
+    def write(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        layers: Layers = "all",
+        progress: Progress | None = None,
+    ) -> None:
+        """Write it as a pyramid file, or as what the input was, by the suffix.
+
+        See `wavelet_gis.workflows.save.save`.
+        """
+        if suffix_of(path) == PYRAMID_SUFFIX:
+            write_pyramid_file(path, self.geo, layers, progress)
+        else:
+            self.restored().write(path)
+
+    def figures(self) -> dict[str, Any]:
+        """Return what was done, and how much changed, as JSON-able values."""
+        rms, largest = self.change()
+        figures: dict[str, Any] = {}
+        if self.n_pyramids is not None:
+            figures.update(sigma=self.sigmas, n_pyramids=self.n_pyramids)
+        if self.gains is not None:
+            figures["gains"] = self.gains
+        return {**figures, "rms_change": rms, "largest_change": largest}
+
+
+def filter_pyramid(
+    data: HoldsPyramid | GeoPyramid,
+    *,
+    gains: Iterable[tuple[int, float]] | dict[int, float] = (),
+    levels: tuple[int, int] | None = None,
+    metres: tuple[float, float] | None = None,
+    drop_coarse: bool = False,
+    denoise: bool | float = False,
+    n_pyramids: int = N_PYRAMIDS,
+    channels: Sequence[str] = ("z",),
+    progress: Progress | None = None,
+) -> Filtered:
+    """Return a pyramid with noise taken out, then chosen scales damped, boosted or isolated.
+
+    Parameters
+    ----------
+    data : Analysis, Filtered or GeoPyramid
+        The pyramid.
+    gains, levels, metres
+        See `chosen_gains`.
+    drop_coarse : bool
+        Leave out the coarsest surface too, so that the details remain by themselves.
+    denoise : bool or float
+        Whether noise is taken out; a number is its standard deviation, in the input's unit, which
+        is estimated otherwise.
+    n_pyramids : int
+        How many pyramids in random order are averaged; 0 thresholds the details of this one.
+    channels : sequence of str
+        Which to take noise from.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Returns
+    -------
+    Filtered
+        Each of the two finest meshes has been synthesised once.
+
+    Raises
+    ------
+    OptionError
+        Nothing to do, bounds in the wrong order, levels or channels that are not there; nothing
+        has been computed yet.
+    Cancelled
+        ``progress`` returned False.
+    """
+    geo = pyramid_of(data)
+    single = list(gains.items() if isinstance(gains, dict) else gains)
+    asks_scales = bool(single) or levels is not None or metres is not None or drop_coarse
+    asks_denoising = denoise is not False
+    if not asks_scales and not asks_denoising:
+        raise OptionError(
+            "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
+        )
+    wanted = chosen_gains(geo, single, levels=levels, metres=metres)
+    changed, sigmas = geo, dict[str, float]()
+    finest_before = geo.pyramid.synthesise()
+    if asks_denoising:
+        changed, sigmas = denoised(
+            changed,
+            None if denoise is True else denoise,
+            channels=channels,
+            n_pyramids=n_pyramids,
+            finest=finest_before,
+            progress=progress,
+        )
+    if asks_scales:
+        changed = with_level_gains(changed, wanted, drop_coarse=drop_coarse)
+    return Filtered(
+        before=geo,
+        geo=changed,
+        finest_before=finest_before,
+        finest=changed.pyramid.synthesise(),
+        sigmas=sigmas,
+        gains=wanted if asks_scales else None,
+        n_pyramids=n_pyramids if asks_denoising else None,
+    )
+
+
+def denoised(
     geo: GeoPyramid,
     sigma: float | None = None,
     *,
     channels: Sequence[str] = ("z",),
-    n_pyramids: int = 8,
+    n_pyramids: int = N_PYRAMIDS,
+    finest: TriangleMesh | None = None,
     progress: Progress | None = None,
 ) -> tuple[GeoPyramid, dict[str, float]]:
     """Return the pyramid with the noise taken out, and the noise that was taken for it.
@@ -36,6 +200,8 @@ def denoised_record(
         Which to take it from.
     n_pyramids : int
         How many pyramids in random order are averaged; 0 thresholds the details of this one.
+    finest : TriangleMesh, optional
+        The pyramid's finest mesh, where it has been synthesised already.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -51,25 +217,28 @@ def denoised_record(
     OptionError
         An unknown channel or a negative number; nothing has been computed yet.
     """
-    pyramid, sigmas = geo.pyramid, {}
+    pyramid, sigmas = geo.pyramid, dict[str, float]()
     for name in channels:
         channel_index(pyramid.channels, name)
+    mesh = pyramid.synthesise() if finest is None else finest
     for k, name in enumerate(channels):
+        if k > 0:
+            mesh = pyramid.synthesise()
         unit = geo.frame.z_scale if name == "z" else 1.0
-        deviation = channel_noise(pyramid, name) if sigma is None else sigma * unit
+        deviation = _noise_of(pyramid, mesh, name) if sigma is None else sigma * unit
         sigmas[name] = deviation / unit
         if n_pyramids == 0:
             pyramid = pyramid.denoised(deviation, channels=[name])
             continue
-        mesh = denoise(
-            pyramid.synthesise(),
+        clean = denoise(
+            mesh,
             deviation,
             n_pyramids=n_pyramids,
             channels=[name],
             locked=pyramid.locked,
-            progress=_part(progress, k, len(channels)),
+            progress=part_of(progress, k / len(channels), (k + 1) / len(channels)),
         )
-        pyramid = relifted(pyramid, mesh)
+        pyramid = relifted(pyramid, clean)
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
     listed = ", ".join(f"{name} {deviation:.4g}" for name, deviation in sigmas.items())
     line = f"denoised by {how}, standard deviation of the noise: {listed}"
@@ -83,14 +252,14 @@ def chosen_gains(
     levels: tuple[int, int] | None = None,
     metres: tuple[float, float] | None = None,
 ) -> dict[int, float]:
-    """Return the gain of each level that a band and single gains ask for together.
+    """Return the gain of each level that a range of levels and single gains ask for together.
 
     Parameters
     ----------
     geo : GeoPyramid
         Whose levels.
     gains : iterable of (level, gain)
-        They multiply what the band gives.
+        They multiply what the range gives.
     levels : (int, int), optional
         Keep the details of these levels only.
     metres : (float, float), optional
@@ -110,13 +279,13 @@ def chosen_gains(
     elif levels is not None:
         chosen = band_gains(geo.pyramid, levels=levels)
     for level, gain in gains:
-        check_level(level, geo.pyramid)
+        geo.pyramid.require_details(level)
         chosen[level] = gain * chosen.get(level, 1.0)
     return chosen
 
 
-def scaled_record(
-    geo: GeoPyramid, gains: dict[int, float], *, drops_coarse: bool = False
+def with_level_gains(
+    geo: GeoPyramid, gains: dict[int, float], *, drop_coarse: bool = False
 ) -> GeoPyramid:
     """Return the pyramid with the details of each level multiplied.
 
@@ -126,24 +295,16 @@ def scaled_record(
         What is filtered.
     gains : dict of int to float
         By level; others keep 1.
-    drops_coarse : bool
+    drop_coarse : bool
         Leave out the coarsest surface too, so that the details remain by themselves.
     """
-    pyramid = geo.pyramid.with_gains(gains, 0.0 if drops_coarse else 1.0)
+    pyramid = geo.pyramid.with_gains(gains, 0.0 if drop_coarse else 1.0)
     named = ", ".join(f"{level}={gain:g}" for level, gain in sorted(gains.items()))
-    line = f"gains {named or 'unchanged'}" + ", without the coarse surface" * drops_coarse
+    line = f"gains {named or 'unchanged'}" + ", without the coarse surface" * drop_coarse
     return geo.with_pyramid(pyramid, line)
 
 
-def change_between(before: GeoPyramid, after: GeoPyramid) -> tuple[float, float]:
-    """Return root mean square and largest change of z, in the input's unit."""
-    old, new = (geo.pyramid.synthesise().vertices[:, 2] for geo in (before, after))
-    moved = (new - old) / before.frame.z_scale
-    rms = float(np.sqrt(np.mean(moved**2))) if len(moved) else 0.0
-    return rms, float(np.abs(moved).max(initial=0.0))
-
-
-def _part(progress: Progress | None, k: int, n: int) -> Progress | None:
-    if progress is None:
-        return None
-    return lambda fraction: progress((k + fraction) / n)
+def _noise_of(pyramid: Pyramid, finest: TriangleMesh, channel: str) -> float:
+    first = 2 if pyramid.signal == "z" else 0
+    columns = np.column_stack([finest.vertices, finest.attributes])
+    return estimate_noise(finest, columns[:, first + channel_index(pyramid.channels, channel)])

@@ -14,7 +14,6 @@ from wavelet_core.errors import OptionError
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.cloud import PointCloud
-from wavelet_gis.model.cloud_origin import PointSource
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.workflows.classify import NOT_KNOWN
 
@@ -44,25 +43,24 @@ def labels_from_las(geo: GeoPyramid, unlabelled: Sequence[int] = UNLABELLED) -> 
     OptionError
         The pyramid was not made from a point cloud, or its classes were dropped.
     """
-    source = geo.source
-    if not isinstance(source, PointSource):
+    source = geo.origin.points
+    if source is None:
         raise OptionError(
             "the pyramid was not made from a point cloud, so it has no LAS classes; learn from a "
             "layer instead."
         )
     of_point = _carried_classes(source.cloud)
     if of_point is not None:
-        is_kept = np.ones(source.n_points, dtype=bool)
-        is_kept[source.dropped] = False
-        classes = of_point[is_kept].astype(np.int64)
+        classes = of_point[source.vertex_rows()].astype(np.int64)
     elif "classification" in geo.pyramid.attribute_names:
         mesh = geo.pyramid.synthesise()
         column = mesh.attribute_names.index("classification")
         classes = np.rint(mesh.attributes[:, column]).astype(np.int64)
     else:
         raise OptionError(
-            "the pyramid does not hold the classes of its points; analyse the file again without "
-            "--drop-other-dimensions."
+            "the pyramid does not hold the classes of its points; analyse the file again, with "
+            "{0}.",
+            "carry",
         )
     classes[np.isin(classes, list(unlabelled))] = NOT_KNOWN
     return classes
@@ -101,7 +99,12 @@ def labels_from_layer(
         reason = str(error).splitlines()[0].rstrip(".")
         raise InputFileError(f"{name}: the labels cannot be read ({reason}).") from error
     if field not in list(with_crs["fields"]):
-        raise InputFileError(f"{name}: there is no field {field!r}; name one with --field.")
+        raise InputFileError(
+            "{name}: there is no field {field!r}; name one with {0}.",
+            "field",
+            name=name,
+            field=field,
+        )
     _require_same_crs(geo, name, with_crs["crs"])
     classes = _whole_numbers(name, field, columns[0])
     shapes = shapely.from_wkb(geometry)
@@ -136,14 +139,12 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
         The pyramid was not made from a point cloud, its classes were dropped, or a label is above
         what the point format holds (31 in formats 0 to 5).
     """
-    source = geo.source
-    if not isinstance(source, PointSource):
+    source = geo.origin.points
+    if source is None:
         raise OptionError("the pyramid was not made from a point cloud; write .gpkg or .tif.")
     cloud = cast(PointCloud, geo.restore())
-    is_kept = np.ones(source.n_points, dtype=bool)
-    is_kept[source.dropped] = False
     of_point = np.full(source.n_points, NOT_KNOWN, dtype=np.int64)
-    of_point[is_kept] = labels
+    of_point[source.vertex_rows()] = labels
     of_point[source.dropped] = labels[source.representative]
     changed = of_point >= 0
     if "raw_classification" in cloud.carried:
@@ -160,8 +161,9 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
         cloud = replace(cloud, carried={**cloud.carried, "classification": stored})
     elif not any(a.dimension == "classification" for a in cloud.attributes):
         raise OptionError(
-            "the pyramid does not hold the classes of its points; analyse the file again without "
-            "--drop-other-dimensions."
+            "the pyramid does not hold the classes of its points; analyse the file again, with "
+            "{0}.",
+            "carry",
         )
     attributes = []
     for attribute in cloud.attributes:

@@ -1,19 +1,38 @@
-"""From a file to the terrain that is analysed."""
+"""Whatever holds terrain, opened: files of many kinds, and objects of other packages.
+
+Objects are known by what they offer, not by their class, so that nothing is imported for them.
+"""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
+from typing import Any, Literal
 
-from wavelet_gis.crs.frame import vertical_unit_name
+import numpy as np
+
+from wavelet_core import TriangleMesh
+from wavelet_core.errors import OptionError, PyramidError
+from wavelet_gis.crs.frame import CoordinateSystem, vertical_unit_name
 from wavelet_gis.errors import CrsError, InputFileError
-from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem
+from wavelet_gis.io.formats import (
+    CLOUD_SUFFIXES,
+    POINT_TABLE_SUFFIXES,
+    PYRAMID_SUFFIX,
+    VECTOR_SUFFIXES,
+    suffix_of,
+)
+from wavelet_gis.model.dem import Dem, GridGeometry
+from wavelet_gis.model.origin import ORIGINS
+from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem, terrain_of_mesh
+from wavelet_gis.model.tin import frame_of_coordinates, terrain_of_points, terrain_of_triangles
+from wavelet_gis.notes import collected
+from wavelet_gis.workflows.analyse import Analysis
 
-__all__ = ["CLOUD_SUFFIXES", "open_terrain"]
+__all__ = ["load", "open_data", "open_input", "open_terrain", "origin_kind"]
 
-#: What is read with laspy; anything else is left to GDAL.
-CLOUD_SUFFIXES = (".las", ".laz")
+#: How far cells may be from even spacing, in parts of one; single precision leaves that much.
+EVEN_SPACING = 1e-3
 
 
 def open_terrain(
@@ -25,6 +44,11 @@ def open_terrain(
     carry: bool = True,
     crs: str | None = None,
     vertical_unit: str | None = None,
+    keep_noise: bool = False,
+    keep_withheld: bool = False,
+    duplicates: str = "lowest",
+    max_edge: float | Literal["auto"] | None = None,
+    concave: bool = False,
 ) -> Terrain:
     """Return the terrain in a raster or a LAS file.
 
@@ -34,12 +58,14 @@ def open_terrain(
         ``.las`` and ``.laz`` are read with laspy, all else with GDAL.
     band : int, optional
         Of a raster, from 1.
-    attributes, classes, carry
+    attributes, classes, carry, keep_noise, keep_withheld
         Of a point cloud; see `wavelet_gis.io.las.read_cloud`.
     crs : str, optional
         Instead of the CRS in the file.
     vertical_unit : str, optional
         Unit of z, instead of what the file tells.
+    duplicates, max_edge, concave
+        Of a point cloud; see `wavelet_gis.model.cloud_origin.cloud_mesh`.
 
     Raises
     ------
@@ -49,28 +75,57 @@ def open_terrain(
     Warns
     -----
     CrsWarning
-        When there is no CRS, or one whose x and y are no map plane.
+        When there is no CRS, or one whose x and y are not a map plane.
     UnitWarning
         When z is in another unit than the working frame and is converted.
     """
     from wavelet_gis.crs.lookup import coordinate_system
 
     override = coordinate_system(crs) if crs else None
-    if Path(path).suffix.lower() in CLOUD_SUFFIXES:
+    if suffix_of(path) in CLOUD_SUFFIXES:
         from wavelet_gis.io.las import read_cloud
 
         if band is not None:
-            raise InputFileError(f"{path}: a point cloud has no bands; leave --band out.")
-        cloud, place = read_cloud(path, attributes=attributes, classes=classes, carry=carry)
+            raise InputFileError(
+                "{path}: a point cloud has no bands; leave {0} out.", "band", path=path
+            )
+        cloud, place = read_cloud(
+            path,
+            attributes=attributes,
+            classes=classes,
+            carry=carry,
+            keep_noise=keep_noise,
+            keep_withheld=keep_withheld,
+        )
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
-            os.fspath(path), cloud, system, vertical_unit or place.vertical_unit, fault=place.fault
+            os.fspath(path),
+            cloud,
+            system,
+            vertical_unit or place.vertical_unit,
+            fault=place.fault,
+            duplicates=duplicates,
+            max_edge=max_edge,
+            concave=concave,
         )
     from wavelet_gis.io.raster import read_dem
 
+    if keep_noise or keep_withheld or max_edge is not None or concave or duplicates != "lowest":
+        raise InputFileError(
+            "{path}: {0}, {1}, {2}, {3} and {4} are for point clouds; leave them out for a raster.",
+            "keep_noise",
+            "keep_withheld",
+            "duplicates",
+            "max_edge",
+            "concave",
+            path=path,
+        )
     if attributes or classes is not None:
         raise InputFileError(
-            f"{path}: --attributes and --classes are for point clouds; leave them out for a raster."
+            "{path}: {0} and {1} are for point clouds; leave them out for a raster.",
+            "attributes",
+            "classes",
+            path=path,
         )
     dem, place = read_dem(path, band=band)
     system = override or coordinate_system(place.wkt)
@@ -84,3 +139,285 @@ def _known_unit(unit: str | None) -> str | None:
         return vertical_unit_name(unit) if unit else None
     except CrsError:
         return None
+
+
+def open_data(
+    data: Any,
+    *,
+    layer: str | None = None,
+    z_field: str | None = None,
+    **options: Any,
+) -> Terrain | Analysis:
+    """Return the terrain, or the pyramid, in a file or an object.
+
+    Parameters
+    ----------
+    data : path or object
+        A raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or in a table
+        (``.csv``, ``.xyz``); a TIN as a layer of triangles; a pyramid file. Or an open rasterio
+        dataset, an xarray DataArray, a GeoDataFrame, a `TriangleMesh`, a `Dem`.
+    layer, z_field : str, optional
+        Of a vector file: the layer, and the field with the elevation where points have no z.
+    **options
+        See `wavelet_gis.workflows.open.open_terrain`: ``band``, ``attributes``, ``classes``,
+        ``crs``, ``vertical_unit`` and others.
+
+    Returns
+    -------
+    Terrain or Analysis
+        To be analysed or simplified; or, of a pyramid file, what was saved.
+
+    Raises
+    ------
+    InputFileError, CrsError, MeshError
+        As the readers do.
+    OptionError
+        An object of another kind.
+    """
+    if isinstance(data, str | os.PathLike):
+        if suffix_of(data) == PYRAMID_SUFFIX and _holds_pyramid(data):
+            return load(data)
+        return open_input(data, layer=layer, z_field=z_field, **options)
+    with collected() as notes:
+        return _terrain_of_object(data, z_field, options).with_notes(notes)
+
+
+def open_input(
+    path: str | os.PathLike[str],
+    *,
+    layer: str | None = None,
+    z_field: str | None = None,
+    **options: Any,
+) -> Terrain:
+    """Return the terrain in a file other than a pyramid; see `open_data`.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    layer, z_field, **options
+        See `open_data`.
+
+    Notes
+    -----
+    A file that may be either is first tried as a raster: a GeoPackage of tiles, a table of x, y
+    and z in which GDAL sees a grid.
+    """
+    with collected() as notes:
+        suffix = suffix_of(path)
+        if suffix == PYRAMID_SUFFIX and layer is None and _holds_pyramid(path):
+            raise InputFileError(
+                "{path}: this is a pyramid already; give its input, or, to analyse one of its "
+                "layers, name it by {0}.",
+                "layer",
+                path=path,
+            )
+        if suffix in (*VECTOR_SUFFIXES, *POINT_TABLE_SUFFIXES) and os.path.isfile(path):
+            terrain = _raster_or_vector(path, layer, z_field, options)
+        else:
+            terrain = open_terrain(path, **options)
+        return terrain.with_notes(notes)
+
+
+def load(path: str | os.PathLike[str]) -> Analysis:
+    """Return the pyramid in a pyramid file, everything in it checked.
+
+    Parameters
+    ----------
+    path : path
+        A GeoPackage of any origin.
+
+    Raises
+    ------
+    InputFileError
+        When the file is missing, no GeoPackage, or holds no pyramid.
+    PyramidError
+        When its parts are damaged or do not fit together.
+    """
+    from wavelet_gis.io.pyramid_file import read_pyramid
+
+    return Analysis(read_pyramid(path))
+
+
+def origin_kind(path: str | os.PathLike[str]) -> str:
+    """Return what a pyramid file was made from, without its arrays: ``raster`` and so on.
+
+    Parameters
+    ----------
+    path : path
+        A pyramid file.
+
+    Raises
+    ------
+    InputFileError
+        When the file is missing, no GeoPackage, or holds no pyramid.
+    PyramidError
+        When it claims a kind that is none of ours.
+    """
+    from wavelet_gis.io.pyramid_file import read_summary
+
+    source = read_summary(path).get("source")
+    kind = source.get("kind") if isinstance(source, dict) else None
+    if not isinstance(kind, str) or kind not in ORIGINS:
+        raise PyramidError(
+            f"{path}: the file claims a source of kind {kind!r}; analyse the input anew."
+        )
+    return kind
+
+
+def _holds_pyramid(path: str | os.PathLike[str]) -> bool:
+    from wavelet_gis.io.pyramid_file import read_summary
+
+    try:
+        read_summary(path)
+    except InputFileError:  # no GeoPackage, or one without our tables
+        return False
+    return True
+
+
+def _raster_or_vector(
+    path: str | os.PathLike[str], layer: str | None, z_field: str | None, options: dict[str, Any]
+) -> Terrain:
+    names = tuple(options.get("attributes", ()))
+    no_raster: InputFileError | None = None
+    if layer is None and z_field is None and not names:
+        try:
+            return open_terrain(path, **options)
+        except InputFileError as error:
+            no_raster = error
+    name = os.fspath(path)
+    system, unit = _system(options), options.get("vertical_unit")
+    try:
+        if suffix_of(path) in POINT_TABLE_SUFFIXES:
+            from wavelet_gis.io.point_table import read_point_table
+
+            table = read_point_table(path, names)
+            return terrain_of_points(
+                name, table.points, table.attributes, names, system or CoordinateSystem(), unit
+            )
+        from wavelet_gis.io.vector_input import read_vector
+
+        found = read_vector(path, layer=layer, z_field=z_field, attributes=names)
+    except InputFileError as error:
+        raise error if no_raster is None or _is_about_content(error) else no_raster from error
+    return _terrain_of_vector(name, found, system, unit)
+
+
+def _is_about_content(error: InputFileError) -> bool:
+    """Whether the file was read as points or triangles, so that this is what is wrong with it."""
+    return "cannot be read" not in str(error)
+
+
+def _terrain_of_vector(
+    name: str, found: Any, system: CoordinateSystem | None, unit: str | None
+) -> Terrain:
+    from wavelet_gis.crs.lookup import coordinate_system
+
+    place = system or coordinate_system(found.wkt)
+    if found.corners is not None:
+        return terrain_of_triangles(name, found.corners, place, unit)
+    return terrain_of_points(
+        name, found.points, found.attributes, found.attribute_names, place, unit
+    )
+
+
+def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) -> Terrain:
+    name = type(data).__name__
+    system, unit = _system(options), options.get("vertical_unit")
+    if isinstance(data, Dem):
+        return terrain_of_dem(name, data, system or CoordinateSystem(), unit)
+    if isinstance(data, TriangleMesh):
+        place = system or CoordinateSystem()
+        frame, unit_name = frame_of_coordinates(name, data.vertices, place, unit)
+        local = TriangleMesh(
+            frame.to_local(data.vertices), data.faces, data.attributes, data.attribute_names
+        )
+        return terrain_of_mesh(name, local, place, frame, unit_name)
+    if all(hasattr(data, part) for part in ("read_masks", "transform", "name")):
+        return open_terrain(data.name, **options)  # a rasterio dataset
+    if all(hasattr(data, part) for part in ("dims", "coords", "values")):
+        return _terrain_of_data_array(data, system, unit)
+    if all(hasattr(data, part) for part in ("geometry", "crs", "columns")):
+        from wavelet_gis.io.vector_input import vector_terrain
+
+        names = tuple(options.get("attributes", ()))
+        shapes = np.asarray(data.geometry.values, dtype=object)
+        wkt = None if data.crs is None else data.crs.to_wkt()
+        found = vector_terrain(name, shapes, data, wkt, z_field=z_field, attributes=names)
+        return _terrain_of_vector(name, found, system, unit)
+    raise OptionError(
+        f"a {name} holds no terrain; give a path, a rasterio dataset, an xarray DataArray, a "
+        "GeoDataFrame, a TriangleMesh or a Dem."
+    )
+
+
+def _terrain_of_data_array(
+    array: Any, system: CoordinateSystem | None, unit: str | None
+) -> Terrain:
+    """Return the terrain in an xarray DataArray with two evenly spaced coordinates."""
+    flat = array.squeeze()
+    if len(flat.dims) != 2:
+        raise OptionError(
+            f"the DataArray has the dimensions {', '.join(map(str, array.dims))}; choose two, such "
+            "as array.sel(band=1)."
+        )
+    across = [dim for dim in flat.dims if str(dim).lower() in ("x", "lon", "longitude", "easting")]
+    if len(across) != 1:
+        raise OptionError(
+            f"the DataArray has the dimensions {', '.join(map(str, flat.dims))}; call them y and x."
+        )
+    x_dim = across[0]
+    y_dim = next(dim for dim in flat.dims if dim != x_dim)
+    flat = flat.transpose(y_dim, x_dim)
+    x0, dx = _even_spacing(str(x_dim), flat.coords[x_dim].values)
+    y0, dy = _even_spacing(str(y_dim), flat.coords[y_dim].values)
+    values = np.ascontiguousarray(flat.values)
+    nodata = _nodata_of(array)
+    valid = np.isfinite(values) if values.dtype.kind == "f" else np.ones(values.shape, dtype=bool)
+    if nodata is not None:
+        valid &= values != nodata
+    geometry = GridGeometry(
+        (values.shape[0], values.shape[1]), (dx, 0.0, x0 - dx / 2, 0.0, dy, y0 - dy / 2)
+    )
+    name = str(array.name or "DataArray")
+    return terrain_of_dem(
+        name, Dem(values, valid, geometry, nodata), system or _system_of_array(array), unit
+    )
+
+
+def _even_spacing(name: str, values: Any) -> tuple[float, float]:
+    centres = np.asarray(values, dtype=np.float64)
+    if len(centres) < 2:
+        raise OptionError(f"the coordinate {name} has {len(centres)} value; a surface needs two.")
+    step = (centres[-1] - centres[0]) / (len(centres) - 1)
+    if step == 0 or np.abs(np.diff(centres) - step).max() > EVEN_SPACING * abs(step):
+        raise OptionError(f"the coordinate {name} is not evenly spaced; interpolate it first.")
+    return float(centres[0]), float(step)
+
+
+def _nodata_of(array: Any) -> Any:
+    for holder in (array.attrs, getattr(array, "encoding", {})):
+        for key in ("_FillValue", "nodata", "missing_value"):
+            if holder.get(key) is not None:
+                return np.asarray(holder[key]).item()
+    return None
+
+
+def _system_of_array(array: Any) -> CoordinateSystem:
+    """Return the CRS as rioxarray and CF keep it: in the attributes of a coordinate."""
+    from wavelet_gis.crs.lookup import coordinate_system
+
+    mapping = array.attrs.get("grid_mapping") or array.encoding.get("grid_mapping", "spatial_ref")
+    if mapping in array.coords:
+        attributes = array.coords[mapping].attrs
+        return coordinate_system(attributes.get("crs_wkt") or attributes.get("spatial_ref"))
+    crs = array.attrs.get("crs")
+    return coordinate_system(None if crs is None else str(crs))
+
+
+def _system(options: dict[str, Any]) -> CoordinateSystem | None:
+    if not options.get("crs"):
+        return None
+    from wavelet_gis.crs.lookup import coordinate_system
+
+    return coordinate_system(options["crs"])

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from helpers import UPDATES
 
 from wavelet_core import OptionError, TriangleMesh, analyse, synthetic
 from wavelet_core.accuracy.between_levels import mesh_of_accuracy, mesh_of_size
 from wavelet_core.mesh.location import surface_errors
-
-UPDATES = ["minimum_norm", "martinez_ortega", "one_ring_mean", "none"]
 
 
 def hills() -> TriangleMesh:

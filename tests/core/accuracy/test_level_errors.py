@@ -60,9 +60,9 @@ def test_level_errors(signal):
     mesh = random_delaunay(300, n_attributes=2, seed=2)
     pyramid = analyse(mesh, levels=5, partition="quadric", prediction="GLMN", signal=signal)
     rows = level_errors(pyramid)
-    assert [row.level for row in rows] == [5, 4, 3, 2, 1, 0]
-    assert rows[0].rmse_coefficients == 0
-    assert rows[0].rmse_surface == pytest.approx(0, abs=1e-12)
+    assert [row.level for row in rows] == [0, 1, 2, 3, 4, 5]
+    assert rows[-1].rmse_coefficients == 0
+    assert rows[-1].rmse_surface == pytest.approx(0, abs=1e-12)
     names = ("x", "y", "z", *mesh.attribute_names)
     wanted = columns_of(mesh, names)
     for row in rows:
@@ -87,4 +87,4 @@ def test_with_signal_z_every_input_point_stays_covered():
 def test_plain_subsampling_has_no_error_of_coefficients():
     pyramid = analyse(random_delaunay(200, seed=2), levels=4, update="none")
     assert all(row.rmse_coefficients < 1e-12 for row in level_errors(pyramid))
-    assert level_errors(pyramid)[-1].rmse_surface > 0
+    assert level_errors(pyramid)[0].rmse_surface > 0

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers import ALL_PREDICTIONS, UPDATES
+from helpers import PAIRS, UNSTABLE_TOO
 
 from wavelet_core import Cancelled, OptionError, PyramidError, TriangleMesh, analyse, synthetic
 from wavelet_core.features.spectrum import (
@@ -17,8 +17,8 @@ from wavelet_core.features.spectrum import (
 from wavelet_core.lifting.spacings import level_spacings
 
 
-@pytest.mark.parametrize("prediction", ALL_PREDICTIONS)
-@pytest.mark.parametrize("update", UPDATES)
+@UNSTABLE_TOO
+@pytest.mark.parametrize(("prediction", "update"), PAIRS)
 def test_base_and_bands_sum_to_the_input(prediction, update):
     mesh = synthetic.scattered(300, n_attributes=1)
     pyramid = analyse(mesh, levels=4, partition="colouring", prediction=prediction, update=update)

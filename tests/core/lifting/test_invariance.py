@@ -32,11 +32,11 @@ def designs(n_points):
     """Yield the digest of a pyramid for every filter pair and partition, on both signals."""
     mesh = random_delaunay(n_points, n_attributes=2, seed=1, offset=1e3)
     for signal in ("z", "xyz"):
-        for prediction in helpers.ALL_PREDICTIONS:
-            for update in helpers.UPDATES:
-                options = {"prediction": prediction, "update": update, "signal": signal}
-                yield digest(analyse(mesh, levels=4, partition="quadric", **options))
-        yield digest(analyse(mesh, levels=4, partition="colouring", signal=signal))
+        for prediction, update in helpers.PAIRS:
+            options = {"prediction": prediction, "update": update, "signal": signal}
+            yield digest(analyse(mesh, levels=4, partition="quadric", **options))
+        for partition in helpers.PARTITIONS:
+            yield digest(analyse(mesh, levels=4, partition=partition, signal=signal))
 
 
 def has_equal_targets(mesh):
@@ -57,10 +57,17 @@ def has_equal_targets(mesh):
     n=st.integers(30, 80),
     seed=st.integers(0, 2**32 - 1),
     signal=st.sampled_from(["z", "xyz"]),
-    prediction=st.sampled_from(["uniform", "cotangent", "geometric", "nnls", "plane"]),
-    update=st.sampled_from(["martinez_ortega", "minimum_norm", "none"]),
+    # One-ring means follow the order of removal; the damping alone decides some least-squares
+    # weights, and the index which of two covering faces is taken.
+    pair=st.sampled_from(
+        [
+            (prediction, update)
+            for prediction, update in helpers.PAIRS
+            if prediction not in ("least_squares", "barycentric") and update != "one_ring_mean"
+        ]
+    ),
 )
-def test_relabelling_vertices_and_faces_changes_nothing_else(n, seed, signal, prediction, update):
+def test_relabelling_vertices_and_faces_changes_nothing_else(n, seed, signal, pair):
     mesh = random_delaunay(n, n_attributes=2, seed=seed)
     rng = np.random.default_rng(seed)
     old_of_new = rng.permutation(n)
@@ -70,9 +77,9 @@ def test_relabelling_vertices_and_faces_changes_nothing_else(n, seed, signal, pr
     other = TriangleMesh(
         mesh.vertices[old_of_new], faces, mesh.attributes[old_of_new], mesh.attribute_names
     )
-    options = {"prediction": prediction, "update": update, "signal": signal}
+    options = {"prediction": pair[0], "update": pair[1], "signal": signal}
     ours = analyse(mesh, levels=3, partition="quadric", **options)
-    assume(not any(has_equal_targets(level_mesh) for _, level_mesh in ours.meshes(start=1)))
+    assume(not any(has_equal_targets(level_mesh) for level_mesh in list(ours)[1:]))
     theirs = analyse(other, levels=3, partition="quadric", **options)
     assert ours.n_levels == theirs.n_levels
     for level in range(ours.n_levels + 1):

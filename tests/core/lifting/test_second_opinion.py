@@ -55,9 +55,21 @@ def assert_agree(pyramid, analysis, weight_tolerance, value_tolerance):
         )
 
 
+def filters_of(pyramid):
+    """Return (P, U) of each step as dense matrices, the first one carried out first.
+
+    They stand in for a filter of the tables that the reference has no formula for, so that the
+    rest of the lifting is held against it all the same.
+    """
+    pairs = (pyramid.filters(level) for level in reversed(range(pyramid.n_levels)))
+    return [(pair.prediction.toarray(), pair.update.toarray()) for pair in pairs]
+
+
+@helpers.UNSTABLE_TOO
 @pytest.mark.parametrize("signal", ["z", "xyz"])
-@pytest.mark.parametrize("update", helpers.UPDATES)
-@pytest.mark.parametrize("prediction", helpers.PREDICTIONS)
+@pytest.mark.parametrize(
+    ("prediction", "update"), [pair for pair in helpers.PAIRS if pair[0] in helpers.PREDICTIONS]
+)
 @pytest.mark.parametrize("mesh_name", MESHES)
 def test_filters_and_coefficients(mesh_name, prediction, update, signal):
     """Given the same partition, P, U, w, s, ζ and the coarse faces are the same."""
@@ -70,6 +82,7 @@ def test_filters_and_coefficients(mesh_name, prediction, update, signal):
         mesh.attributes,
         levels=LEVELS,
         partitions=partitions_of(pyramid),
+        filters=filters_of(pyramid),
         **options,
     )
     if prediction == "least_squares":
@@ -79,8 +92,10 @@ def test_filters_and_coefficients(mesh_name, prediction, update, signal):
         assert_agree(pyramid, analysis, weight_tolerance=1e-8, value_tolerance=1e-9)
 
 
-@pytest.mark.parametrize("update", helpers.UPDATES)
-@pytest.mark.parametrize("prediction", helpers.PLAN_PREDICTIONS)
+@pytest.mark.parametrize(
+    ("prediction", "update"),
+    [pair for pair in helpers.PAIRS if pair[0] in helpers.PLAN_PREDICTIONS],
+)
 @pytest.mark.parametrize("mesh_name", ["delaunay", "delaunay, z alone", "open fan"])
 def test_filters_beyond_the_paper(mesh_name, prediction, update):
     """On a grid an odd vertex may lie on an edge of two covering faces; so these are no grids."""
@@ -93,6 +108,7 @@ def test_filters_beyond_the_paper(mesh_name, prediction, update):
         mesh.attributes,
         levels=LEVELS,
         partitions=partitions_of(pyramid),
+        filters=filters_of(pyramid),
         **options,
     )
     assert_agree(pyramid, analysis, weight_tolerance=1e-8, value_tolerance=1e-9)

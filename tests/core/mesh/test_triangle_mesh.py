@@ -5,7 +5,7 @@ import pytest
 from helpers import assert_faces_have_area, euler_number
 from helpers_meshes import grid_with_holes
 
-from wavelet_core import MeshError, TriangleMesh, analyse
+from wavelet_core import MeshError, TriangleMesh, analyse, synthetic
 from wavelet_core.mesh.triangulation import merge_duplicates
 
 SQUARE = np.array([[0.0, 0, 1], [1, 0, 2], [1, 1, 3], [0, 1, 4]])
@@ -81,7 +81,7 @@ def test_an_edge_no_surface_has_is_refused_by_name(faces, signal):
 def test_a_flipped_face_is_no_tin_but_a_surface():
     vertices = [[0, 0, 0], [2, 0, 0], [1, 2, 0], [1, 0.5, 1], [1, -1, 0.5]]
     mesh = TriangleMesh(vertices, [[0, 1, 2], [1, 0, 3]])
-    with pytest.raises(MeshError, match=r"face 1 .* use signal='xyz'"):
+    with pytest.raises(MeshError, match=r"face 1 .* use signal 'xyz'"):
         analyse(mesh, levels=1, signal="z")
     analyse(mesh, levels=1, signal="xyz")
 
@@ -236,3 +236,47 @@ def test_points_that_span_no_area_are_refused(points):
 def test_points_with_nan_are_refused_by_row():
     with pytest.raises(MeshError, match="vertex 1 "):
         TriangleMesh.from_points([[0, 0, 0], [np.nan, 1, 1], [1, 0, 0], [0, 1, 0]])
+
+
+def test_meshes_are_equal_by_their_values():
+    """`==` raised, as it compared arrays to one another."""
+    one, same = synthetic.hills(5, 6), synthetic.hills(5, 6)
+    assert (one == same) is True
+    assert (one != same) is False
+    assert one != synthetic.hills(6, 5)
+    named = TriangleMesh(one.vertices, one.faces, one.vertices[:, :1], ["a"])
+    assert named != one
+    assert named != TriangleMesh(one.vertices, one.faces, one.vertices[:, :1], ["b"])
+    assert one != "a mesh"
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(one)
+
+
+def test_a_mesh_says_in_one_line_what_it_is():
+    mesh = synthetic.hills(40, 50)
+    assert repr(mesh) == "<TriangleMesh 2,000 vertices, 3,822 faces>"
+    attributes = np.zeros((3, 2))
+    small = TriangleMesh(SQUARE[:3], [[0, 1, 2]], attributes, ["intensity", "class"])
+    assert repr(small) == "<TriangleMesh 3 vertices, 1 face, intensity + class>"
+
+
+def test_the_arrays_of_the_caller_stay_his_own():
+    vertices = np.array(SQUARE, dtype=np.float64)
+    faces = np.array([[0, 1, 2]], dtype=np.int64)
+    attributes = np.zeros((len(vertices), 1))
+    for make in (TriangleMesh, TriangleMesh.from_triangles):
+        mesh = make(vertices, faces, attributes)
+        for mine, ours in ((vertices, mesh.vertices), (faces, mesh.faces)):
+            assert mine.flags.writeable
+            assert not ours.flags.writeable
+            assert not np.shares_memory(mine, ours)
+        assert attributes.flags.writeable
+        assert not np.shares_memory(attributes, mesh.attributes)
+    points = TriangleMesh.from_points(vertices)
+    assert vertices.flags.writeable
+    assert not np.shares_memory(vertices, points.vertices)
+    elevation, x = np.zeros((3, 3)), np.arange(3.0)
+    grid = TriangleMesh.from_grid(elevation, x=x, y=x)
+    assert elevation.flags.writeable
+    assert x.flags.writeable
+    assert not np.shares_memory(elevation, grid.vertices)

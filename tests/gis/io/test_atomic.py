@@ -55,7 +55,7 @@ def test_an_old_file_stays_until_the_new_one_is_whole(tmp_path):
 
 def test_what_exists_is_kept(tmp_path):
     (tmp_path / "a.txt").write_text("old")
-    with pytest.raises(OutputFileError, match=r"exists.*--overwrite"):
+    with pytest.raises(OutputFileError, match=r"exists.*overwrite"):
         finish(tmp_path / "a.txt", "new")
     assert (tmp_path / "a.txt").read_text() == "old"
 

@@ -1,11 +1,21 @@
 """The GeoPackage itself: valid without layers, styles added, strangers opened with care."""
 
+import os
+import shutil
 import sqlite3
+import time
 
 import pytest
 
-from wavelet_gis.errors import InputFileError
-from wavelet_gis.io.geopackage import create_geopackage, open_stranger, table_names, write_styles
+from wavelet_gis.errors import InputFileError, OutputFileError
+from wavelet_gis.io.geopackage import (
+    create_geopackage,
+    open_for_writing,
+    open_stranger,
+    table_names,
+    write_styles,
+)
+from wavelet_gis.io.pyramid_file import read_pyramid, read_summary
 
 
 def test_an_empty_one_is_valid(tmp_path, validate_gpkg):
@@ -50,3 +60,126 @@ def test_what_is_no_database(tmp_path):
     ]:
         with pytest.raises(InputFileError, match=what), open_stranger(path):
             pytest.fail("the block must not begin")
+
+
+@pytest.fixture
+def copy(raster_pyramid, tmp_path):
+    return shutil.copy(raster_pyramid, tmp_path / "p.gpkg")
+
+
+@pytest.mark.parametrize("mode", ["EXCLUSIVE", "WAL and EXCLUSIVE"])
+def test_a_file_that_another_program_holds(copy, mode):
+    other = sqlite3.connect(copy, isolation_level=None)
+    if mode.startswith("WAL"):
+        other.execute("PRAGMA journal_mode = WAL")
+        other.execute("PRAGMA locking_mode = EXCLUSIVE")
+    other.execute("BEGIN EXCLUSIVE")
+    other.execute("UPDATE gpkg_contents SET description = ''")
+    started = time.monotonic()
+    for read in (read_summary, read_pyramid):
+        with pytest.raises(InputFileError, match="another program holds the file locked") as caught:
+            read(copy)
+        assert "damaged" not in str(caught.value)
+    assert time.monotonic() - started < 10
+    other.rollback()
+    other.close()
+    read_summary(copy)
+
+
+def test_a_file_that_another_program_holds_is_not_written(tmp_path):
+    create_geopackage(tmp_path / "a.gpkg")
+    other = sqlite3.connect(tmp_path / "a.gpkg", isolation_level=None)
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(OutputFileError, match="another program holds the file locked"):
+        write_styles(tmp_path / "a.gpkg", [("one", "One", "<qgis/>", "first")])
+    other.close()
+
+
+def test_a_disk_without_room_is_called_full(tmp_path):
+    create_geopackage(tmp_path / "a.gpkg")
+    with (
+        pytest.raises(OutputFileError, match=r"the disk is full .*make room"),
+        open_for_writing(tmp_path / "a.gpkg") as connection,
+    ):
+        connection.executescript(
+            "PRAGMA max_page_count = 30; CREATE TABLE big AS SELECT zeroblob(1000000)"
+        )
+
+
+def test_a_folder_that_is_none(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputFileError, match="the system does not open the file"):
+        create_geopackage(tmp_path / "file" / "a.gpkg")
+
+
+def test_a_pipe_does_not_keep_us_waiting(tmp_path):
+    os.mkfifo(tmp_path / "a.gpkg")
+    with pytest.raises(InputFileError, match="a pipe"):
+        read_summary(tmp_path / "a.gpkg")
+
+
+def test_what_lies_beside_a_damaged_file_is_named(copy, cloud_pyramid):
+    other = sqlite3.connect(copy)
+    other.execute("PRAGMA journal_mode = WAL")
+    other.execute("UPDATE wavelet_levels SET n_faces = n_faces + 1")
+    other.commit()
+    frames = copy.with_name("p.gpkg-wal").read_bytes()
+    other.close()
+    shutil.copy(cloud_pyramid, copy)
+    with sqlite3.connect(copy) as connection:
+        connection.execute("PRAGMA journal_mode = WAL")
+    connection.close()
+    copy.with_name("p.gpkg-wal").write_bytes(frames)
+    with pytest.raises(OSError, match=r"p\.gpkg-wal lies beside it"):
+        read_pyramid(copy)
+
+
+def test_what_never_ends_is_ended(tmp_path):
+    create_geopackage(tmp_path / "a.gpkg")
+    started = time.monotonic()
+    with (
+        pytest.raises(InputFileError, match="more work than any pyramid file needs"),
+        open_stranger(tmp_path / "a.gpkg") as connection,
+    ):
+        connection.execute(
+            "WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n) SELECT MAX(i) FROM n"
+        ).fetchone()
+    assert time.monotonic() - started < 20
+
+
+def test_layers_are_dated_alike_whatever_else_the_process_writes(
+    raster_record, tmp_path, monkeypatch
+):
+    from wavelet_gis.io.vector import add_layers
+    from wavelet_gis.products.layers import coarse_layers
+
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+
+    def with_another_between():
+        for k, layer in enumerate(coarse_layers(raster_record)):
+            add_layers(tmp_path / f"b{k}.gpkg", coarse_layers(raster_record), raster_record.system)
+            yield layer
+
+    add_layers(tmp_path / "a.gpkg", with_another_between(), raster_record.system)
+    for name in ("a.gpkg", "b0.gpkg", "b1.gpkg"):
+        with sqlite3.connect(tmp_path / name) as connection:
+            dates = set(connection.execute("SELECT last_change FROM gpkg_contents"))
+        assert dates == {("2023-11-14T22:13:20.000Z",)}
+    assert (tmp_path / "a.gpkg").read_bytes() == (tmp_path / "b1.gpkg").read_bytes()
+
+
+def test_a_schema_of_very_many_tables(tmp_path):
+    create_geopackage(tmp_path / "a.gpkg")
+    connection = sqlite3.connect(tmp_path / "a.gpkg")
+    connection.execute("PRAGMA writable_schema = ON")
+    connection.execute(
+        "INSERT INTO sqlite_master SELECT 'table', 't' || i, 't' || i, 2, "
+        "'CREATE TABLE t' || i || '(a)' FROM (WITH RECURSIVE n(i) AS "
+        "(SELECT 0 UNION ALL SELECT i + 1 FROM n LIMIT 300000) SELECT i FROM n)"
+    )
+    connection.commit()
+    connection.close()
+    started = time.monotonic()
+    with pytest.raises(InputFileError, match="more work than any pyramid file needs"):
+        read_summary(tmp_path / "a.gpkg")
+    assert time.monotonic() - started < 10

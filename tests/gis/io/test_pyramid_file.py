@@ -12,7 +12,8 @@ from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid_file import read_pyramid, read_summary, write_pyramid
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.dem import Dem
-from wavelet_gis.model.geo_pyramid import GeoPyramid, MeshSource
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.mesh_origin import MeshOrigin
 
 
 def assert_same_pyramid(actual, expected):
@@ -39,7 +40,7 @@ def record_of(mesh, **options):
         system=CoordinateSystem(),
         frame=LocalFrame(),
         vertical_unit="metre",
-        source=MeshSource(),
+        origin=MeshOrigin(),
         source_name="hills",
     )
 
@@ -52,7 +53,7 @@ def test_all_of_it_is_read_again(name, request):
     assert back.system == geo.system
     assert back.frame == geo.frame
     assert back.errors == geo.errors
-    assert back.source.checksum == geo.source.checksum
+    assert back.origin.checksum == geo.origin.checksum
     assert isinstance(back.restore(), Dem if name == "raster" else PointCloud)
 
 
@@ -94,7 +95,7 @@ def test_an_altered_pyramid_is_stored_as_such(raster_record, tmp_path):
     write_pyramid(tmp_path / "a.gpkg", altered)
     back = read_pyramid(tmp_path / "a.gpkg")
     assert back.history == ("coarse heights set to 250",)
-    assert not back.source.is_exact
+    assert not back.origin.is_exact
     assert back.errors is None
     values = back.restore().values
     assert values.dtype == np.float32
@@ -104,7 +105,7 @@ def test_an_altered_pyramid_is_stored_as_such(raster_record, tmp_path):
 def test_the_summary_needs_no_arrays(raster_pyramid, raster_record):
     summary = read_summary(raster_pyramid)
     assert summary["format"]["version"] == 1
-    assert summary["pyramid"]["n_vertices"] == raster_record.source.n_vertices
+    assert summary["pyramid"]["n_vertices"] == raster_record.origin.n_vertices
     assert summary["source"]["shape"] == [40, 50]
     assert [level["level"] for level in summary["levels"]] == [4, 3, 2, 1, 0]
     assert summary["levels"][-1]["rmse_surface"] > 0
@@ -142,6 +143,7 @@ LIGHT = [
     "model.cloud_origin",
     "model.exact_restore",
     "io.array_codec",
+    "io.array_tables",
     "io.geopackage",
     "model.geo_pyramid",
     "io.pyramid_file",

@@ -109,6 +109,10 @@ REFUSED = {
 
 #: Usable, but not without a word; the text is part of the warning.
 WARNED = {
+    "bad_vlr_count.las": "announces 3 VLRs, 2 lie before the points",
+    "old_pointwise.laz": "say that x and y are in us survey foot",
+    "lone-star.copc.laz": "neither geographic nor projected",
+    "wkt_and_geotiff.las": "25 of the noise classes",
     "las13_waveform_pdrf4.las": "waveform",
     "las14_pdrf6_badwkt.laz": "CRS is broken",
     "warsaw_empty_wkt.las": "CRS is broken",
@@ -133,6 +137,8 @@ def test_every_nasty_file_works_or_is_refused(path, tmp_path, recwarn):
         return
     geo = through_a_file(path, tmp_path)
     warned = [str(w.message) for w in recwarn if issubclass(w.category, TerrainWarning)]
+    usual = ("share x and y with others", "gaps between the points", "no triangle")
+    warned = [text for text in warned if not any(words in text for words in usual)]
     if path.name in WARNED:
         assert any(WARNED[path.name] in text for text in warned), warned
     else:
@@ -144,6 +150,9 @@ def test_every_nasty_file_works_or_is_refused(path, tmp_path, recwarn):
     import laspy
 
     write_cloud(tmp_path / f"out{path.suffix}", geo.restore())
+    if path.suffix == ".las":
+        assert (tmp_path / "out.las").read_bytes() == path.read_bytes()
+        return
     before, after = laspy.read(path), laspy.read(tmp_path / f"out{path.suffix}")
     assert after.points.array.tobytes() == before.points.array.tobytes()
     assert list(after.header.scales) == list(before.header.scales)

@@ -8,7 +8,7 @@ from wavelet_core.errors import MeshError, PyramidError
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.cloud import PointAttribute, PointCloud, cloud_bounds
-from wavelet_gis.model.cloud_origin import PointSource, cloud_mesh
+from wavelet_gis.model.cloud_origin import CloudOrigin, cloud_mesh
 
 
 def cloud_of(integers, *attributes, scales=(0.01, 0.01, 0.01)):
@@ -113,7 +113,7 @@ def test_an_attribute_that_is_no_number(rng):
 
 
 def test_parts_survive(parts):
-    source = PointSource.from_parts(*parts)
+    source = CloudOrigin.from_parts(*parts)
     assert source.n_points == 300
     assert source.n_vertices == 250
     assert [a.name for a in source.cloud.attributes] == ["a0", "a1"]
@@ -140,7 +140,7 @@ def test_parts_survive(parts):
 def test_damaged_fields_are_refused(parts, damage):
     fields, arrays = parts
     with pytest.raises(PyramidError):
-        PointSource.from_parts(fields | damage, arrays)
+        CloudOrigin.from_parts(fields | damage, arrays)
 
 
 @pytest.mark.parametrize(
@@ -160,6 +160,6 @@ def test_damaged_fields_are_refused(parts, damage):
 def test_damaged_arrays_are_refused(parts, damage):
     fields, arrays = parts
     with pytest.raises(PyramidError):
-        PointSource.from_parts(fields, arrays | damage)
+        CloudOrigin.from_parts(fields, arrays | damage)
     with pytest.raises(PyramidError):
-        PointSource.from_parts(fields, {})
+        CloudOrigin.from_parts(fields, {})

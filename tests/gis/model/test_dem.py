@@ -12,7 +12,7 @@ from wavelet_core.errors import PyramidError
 from wavelet_gis.crs.frame import LocalFrame, working_frame
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.dem import Dem, GridGeometry, RasterSource, dem_mesh, grid_bounds
+from wavelet_gis.model.dem import Dem, GridGeometry, RasterOrigin, dem_mesh, grid_bounds
 
 NORTH_UP = (2.0, 0.0, 100.0, 0.0, -3.0, 60.0)
 SOUTH_UP = (2.0, 0.0, 100.0, 0.0, 3.0, 0.0)
@@ -30,7 +30,7 @@ def source_with_corrections(dem, frame=None, levels=3):
     frame = frame or LocalFrame()
     mesh = dem_mesh(dem, frame)
     pyramid = analyse(mesh, levels=levels)
-    return RasterSource.from_dem(dem).with_corrections(dem, pyramid.synthesise(), frame), pyramid
+    return RasterOrigin.from_dem(dem).with_corrections(dem, pyramid.synthesise(), frame), pyramid
 
 
 @pytest.mark.parametrize("transform", [NORTH_UP, SOUTH_UP, ROTATED])
@@ -154,7 +154,7 @@ def parts_of(dem):
 @pytest.mark.parametrize("nodata", [None, -9999, -9999.5, float("nan"), 2**62])
 def test_parts_survive(nodata):
     fields, arrays = parts_of(dem_of(hills(), nodata=nodata))
-    back = RasterSource.from_parts(fields, arrays)
+    back = RasterOrigin.from_parts(fields, arrays)
     assert repr(back.nodata) == repr(nodata)
     assert back.geometry.transform == NORTH_UP
 
@@ -181,7 +181,7 @@ def test_parts_survive(nodata):
 def test_damaged_fields_are_refused(damage):
     fields, arrays = parts_of(dem_of(hills()))
     with pytest.raises(PyramidError):
-        RasterSource.from_parts(fields | damage, arrays)
+        RasterOrigin.from_parts(fields | damage, arrays)
 
 
 @pytest.mark.parametrize(
@@ -196,6 +196,6 @@ def test_damaged_fields_are_refused(damage):
 def test_damaged_arrays_are_refused(damage):
     fields, arrays = parts_of(dem_of(hills()))
     with pytest.raises(PyramidError):
-        RasterSource.from_parts(fields, arrays | damage)
+        RasterOrigin.from_parts(fields, arrays | damage)
     with pytest.raises(PyramidError, match="damaged"):
-        RasterSource.from_parts(fields, {})
+        RasterOrigin.from_parts(fields, {})

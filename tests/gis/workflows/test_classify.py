@@ -207,14 +207,14 @@ def test_las_classes_go_out_and_come_back(tmp_path, version, point_format):
     np.testing.assert_array_equal(before.gps_time, after.gps_time)
     np.testing.assert_array_equal(before.return_number, after.return_number)
     is_vertex = np.ones(400, dtype=bool)
-    is_vertex[geo.source.dropped] = False
+    is_vertex[geo.origin.dropped] = False
     was, now = np.array(before.classification), np.array(after.classification)
     np.testing.assert_array_equal(now[is_vertex], np.where(was[is_vertex] == 2, 6, 5))
     # a point without a vertex of its own goes with the one at its place
     kept = np.flatnonzero(is_vertex)
-    stand_in = kept[geo.source.representative]
+    stand_in = kept[geo.origin.representative]
     changed = was[stand_in] == 2
-    assert (now[geo.source.dropped][changed] == 6).all()
+    assert (now[geo.origin.dropped][changed] == 6).all()
 
 
 def test_unlabelled_classes_are_not_known(tmp_path):
@@ -236,7 +236,7 @@ def test_classes_that_are_not_there_are_refused(halves, tmp_path):
         cloud_with_classes(halves, np.zeros(4800, dtype=np.int64))
     terrain = open_terrain(write_las(tmp_path / "a.las"), carry=False)
     geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=1))
-    with pytest.raises(OptionError, match="without --drop-other-dimensions"):
+    with pytest.raises(OptionError, match="again, with carry"):
         labels_from_las(geo)
 
 
@@ -300,7 +300,7 @@ def test_labels_become_a_raster_and_a_layer(raster_record, cloud_record):
     mesh = raster_record.pyramid.synthesise()
     labels = np.arange(mesh.n_vertices) % 5 - 1
     bands = label_band(raster_record, mesh, labels, "cluster")
-    valid = raster_record.source.valid
+    valid = raster_record.origin.valid
     np.testing.assert_array_equal(bands.values[0][valid], np.where(labels < 0, 255, labels))
     assert (bands.values[0][~valid] == 255).all()
     with pytest.raises(InputFileError, match="does not fit a raster of bytes"):
@@ -317,6 +317,6 @@ def test_labels_become_a_raster_and_a_layer(raster_record, cloud_record):
 def test_value_bands_keep_the_grid_of_a_raster(raster_record):
     mesh = raster_record.pyramid.synthesise()
     bands = value_bands(raster_record, mesh, mesh.vertices[:, [2]], ["z"])
-    valid = raster_record.source.valid
+    valid = raster_record.origin.valid
     np.testing.assert_array_equal(bands.values[0][valid], mesh.vertices[:, 2].astype(np.float32))
     assert np.isnan(bands.values[0][~valid]).all()

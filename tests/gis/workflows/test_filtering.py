@@ -8,16 +8,16 @@ from wavelet_core import OptionError, analyse
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.workflows import filtering
 from wavelet_gis.workflows.filtering import (
-    change_between,
     chosen_gains,
-    denoised_record,
-    scaled_record,
+    denoised,
+    filter_pyramid,
+    with_level_gains,
 )
 from wavelet_gis.workflows.open import open_terrain
 
 
 @pytest.fixture(scope="module")
-def feet_record(tmp_path_factory):
+def in_feet(tmp_path_factory):
     """Return the pyramid of a DEM in feet, whose levels are bands of sizes."""
     path = write_tif(
         tmp_path_factory.mktemp("feet") / "feet.tif", hills().astype("f4"), crs="EPSG:2226"
@@ -26,35 +26,37 @@ def feet_record(tmp_path_factory):
     return terrain.geo_pyramid(analyse(terrain.mesh, levels=3, partition="random"))
 
 
-def test_a_band_in_metres_and_single_gains_multiply(feet_record):
-    finest = level_spacings(feet_record.pyramid)[3] * 0.3048006096
-    gains = chosen_gains(feet_record, [(1, 3.0), (1, 0.5)], metres=(1.01 * finest, np.inf))
+def test_a_band_in_metres_and_single_gains_multiply(in_feet):
+    finest = level_spacings(in_feet.pyramid)[3] * 0.3048006096
+    gains = chosen_gains(in_feet, [(1, 3.0), (1, 0.5)], metres=(1.01 * finest, np.inf))
     assert gains == {0: 1.0, 1: 1.5, 2: 0.0}
-    assert chosen_gains(feet_record, [(1, 3.0), (2, 3.0)], levels=(0, 1)) == {0: 1, 1: 3, 2: 0}
+    assert chosen_gains(in_feet, [(1, 3.0), (2, 3.0)], levels=(0, 1)) == {0: 1, 1: 3, 2: 0}
 
 
-def test_every_change_is_a_line_of_history(feet_record):
-    once = scaled_record(feet_record, {2: 0.0})
-    twice, sigmas = denoised_record(once, 0.5, n_pyramids=0)
+def test_every_change_is_a_line_of_history(in_feet):
+    once = with_level_gains(in_feet, {2: 0.0})
+    twice, sigmas = denoised(once, 0.5, n_pyramids=0)
     assert sigmas == {"z": 0.5}
     assert twice.history == (
         "gains 2=0",
         "denoised by thresholds, standard deviation of the noise: z 0.5",
     )
-    rms, largest = change_between(feet_record, once)
+    filtered = filter_pyramid(in_feet, gains={2: 0.0})
+    assert filtered.changes == once.history
+    rms, largest = filtered.change()
     assert 0 < rms < largest < 10
-    assert change_between(once, once) == (0.0, 0.0)
+    assert filter_pyramid(once, gains={0: 1.0}).change() == (0.0, 0.0)
 
 
-def test_what_is_not_there_is_refused_before_the_long_work(feet_record, monkeypatch):
+def test_what_is_not_there_is_refused_before_the_long_work(in_feet, monkeypatch):
     def never(*arguments, **options):
         raise AssertionError("the long work began")
 
     monkeypatch.setattr(filtering, "denoise", never)
     with pytest.raises(OptionError, match="no channel 'w'"):
-        denoised_record(feet_record, 0.5, channels=("z", "w"))
+        denoised(in_feet, 0.5, channels=("z", "w"))
     with pytest.raises(OptionError, match="no details at level 3"):
-        chosen_gains(feet_record, [(3, 0.0)])
+        chosen_gains(in_feet, [(3, 0.0)])
 
 
 def test_noise_in_units_of_the_input_moves_z_in_units_of_the_input(tmp_path):
@@ -62,6 +64,6 @@ def test_noise_in_units_of_the_input_moves_z_in_units_of_the_input(tmp_path):
     path = write_tif(tmp_path / "plain.tif", z, crs="EPSG:2226")
     terrain = open_terrain(path)
     geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=4, partition="random"))
-    clean, sigmas = denoised_record(geo, n_pyramids=2)
-    assert sigmas["z"] == pytest.approx(0.5, rel=0.15)
-    assert change_between(geo, clean)[0] == pytest.approx(0.5, rel=0.25)
+    clean = filter_pyramid(geo, denoise=True, n_pyramids=2)
+    assert clean.sigmas["z"] == pytest.approx(0.5, rel=0.15)
+    assert clean.change()[0] == pytest.approx(0.5, rel=0.25)

@@ -5,16 +5,39 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
+from wavelet_gis.cli.table_help import names_from
+from wavelet_gis.io.formats import (
+    MESH_FORMATS,
+    MESH_SUFFIXES,
+    PYRAMID_SUFFIX,
+    RASTER_SUFFIXES,
+    any_of,
+)
+
 if TYPE_CHECKING:
     from wavelet_gis.model.terrain import Terrain
+    from wavelet_gis.workflows.options import WaveletOptions
 
 __all__ = [
+    "INPUTS",
     "add_input_arguments",
     "add_overwrite_argument",
+    "add_surface_arguments",
     "add_wavelet_arguments",
-    "analysis_options",
-    "open_input",
+    "length",
+    "names",
+    "open_given",
+    "surface_formats",
+    "surface_options",
+    "surface_suffixes",
+    "wavelet_options",
 ]
+
+#: What can be analysed, for help.
+INPUTS = (
+    "a raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or a table (.csv, "
+    ".xyz); a TIN as a layer of triangles"
+)
 
 
 def add_input_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,19 +46,53 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--band", type=int, metavar="N", help="band of a raster, from 1")
     group.add_argument(
         "--attributes",
-        type=_names,
+        type=names,
         default=(),
         metavar="A,B",
-        help="dimensions of a point cloud to lift along: classification, intensity, "
-        "return_number, rgb, any extra dimension, hag (height above the class-2 ground)",
+        help="what to lift along: dimensions of a point cloud (classification, intensity, "
+        "return_number, rgb, any extra dimension, hag: height above the class-2 ground), or fields "
+        "of points",
     )
     group.add_argument(
         "--classes", type=_classes, metavar="N,N", help="only points of these classes"
     )
     group.add_argument(
         "--drop-other-dimensions",
-        action="store_true",
+        dest="carry",
+        action="store_false",
         help="do not carry the dimensions that are not lifted; reconstruct writes them as zero",
+    )
+    group.add_argument(
+        "--keep-noise",
+        action="store_true",
+        help="let points of the classes 7 and 18 (noise) be part of the surface; by default they "
+        "are carried only, and come back",
+    )
+    group.add_argument(
+        "--keep-withheld", action="store_true", help="the same for points with the withheld flag"
+    )
+    group.add_argument(
+        "--duplicates",
+        choices=("lowest", "highest", "mean", "first"),
+        default="lowest",
+        help="which height points that share x and y have in common (lowest)",
+    )
+    group.add_argument(
+        "--max-edge",
+        type=_max_edge,
+        metavar="LENGTH|auto",
+        help="leave triangles with a longer edge out, as gaps of the point cloud; in the unit of x "
+        "and y, or metres for a geographic CRS; auto: five times the spacing that 95 %% of the "
+        "points keep",
+    )
+    group.add_argument(
+        "--concave",
+        action="store_true",
+        help="leave out only what such edges open to the outside, so that gaps inside stay closed",
+    )
+    group.add_argument("--layer", metavar="NAME", help="of a vector file of points or triangles")
+    group.add_argument(
+        "--z-field", metavar="NAME", help="field with the elevation where its points have no z"
     )
     group.add_argument("--crs", metavar="CRS", help="instead of the file's, such as EPSG:2154")
     group.add_argument(
@@ -46,18 +103,25 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def open_input(arguments: argparse.Namespace) -> Terrain:
+def open_given(arguments: argparse.Namespace) -> Terrain:
     """Return the terrain that the input arguments name."""
-    from wavelet_gis.workflows.open import open_terrain
+    from wavelet_gis.workflows.open import open_input
 
-    return open_terrain(
+    return open_input(
         arguments.input,
+        layer=arguments.layer,
+        z_field=arguments.z_field,
         band=arguments.band,
         attributes=arguments.attributes,
         classes=arguments.classes,
-        carry=not arguments.drop_other_dimensions,
+        carry=arguments.carry,
         crs=arguments.crs,
         vertical_unit=arguments.vertical_unit,
+        keep_noise=arguments.keep_noise,
+        keep_withheld=arguments.keep_withheld,
+        duplicates=arguments.duplicates,
+        max_edge=arguments.max_edge,
+        concave=arguments.concave,
     )
 
 
@@ -70,9 +134,12 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         help="a design of the paper, prediction and update in one, such as GLMN or NNLSMN; with "
         "the paper's partition unless --partition names another",
     )
-    group.add_argument("--partition", metavar="NAME", help="which vertices are removed")
-    group.add_argument("--prediction", metavar="NAME", help="how removed vertices are predicted")
-    group.add_argument("--update", metavar="NAME", help="how details are handed to those kept")
+    for table, flag, help_ in (
+        ("PARTITIONS", "--partition", "which vertices are removed at a level"),
+        ("PREDICTIONS", "--prediction", "how removed vertices are predicted"),
+        ("UPDATES", "--update", "how details are passed on to the vertices kept"),
+    ):
+        names_from(table, group.add_argument(flag, metavar="NAME", help=help_))
     group.add_argument(
         "--signal", metavar="z|xyz", help="lift elevation and attributes, or x and y too"
     )
@@ -83,7 +150,19 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         help="largest share of the vertices that a level may take; smaller ones are slower and "
         "better",
     )
-    group.add_argument("--bending-weight", type=float, metavar="W", help="of the paper's cost")
+    group.add_argument(
+        "--outline-tolerance",
+        type=float,
+        metavar="D",
+        help="let vertices of the outline and of holes go while the outline stays within this "
+        "distance, in the unit of x and y (metres for a CRS in degrees); by default 0",
+    )
+    group.add_argument(
+        "--bending-weight",
+        type=float,
+        metavar="W",
+        help="weight of bending energy in the paper's cost",
+    )
     group.add_argument(
         "--attribute-weights",
         type=_weights,
@@ -92,30 +171,49 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def analysis_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return the given wavelet options as keywords of `wavelet_core.analyse`.
-
-    What is not given is left to the core's defaults.
-    """
-    from wavelet_core.errors import OptionError
-
-    options = {
+def wavelet_options(arguments: argparse.Namespace) -> WaveletOptions:
+    """Return the wavelet options; what is not given is left to the core's defaults."""
+    return {
+        "design": arguments.design,
         "partition": arguments.partition,
         "prediction": arguments.prediction,
         "update": arguments.update,
         "signal": arguments.signal,
         "removal_fraction": arguments.removal_fraction,
+        "outline_tolerance": arguments.outline_tolerance,
         "bending_weight": arguments.bending_weight,
         "attribute_weights": arguments.attribute_weights,
     }
-    if arguments.design is not None:
-        if arguments.prediction is not None or arguments.update is not None:
-            raise OptionError(
-                "--design names prediction and update; leave out --prediction and --update."
-            )
-        options["prediction"] = arguments.design
-        options["partition"] = arguments.partition or "quadric"
-    return {name: value for name, value in options.items() if value is not None}
+
+
+def add_surface_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a surface that is written as a raster."""
+    raster = parser.add_argument_group("raster")
+    raster.add_argument(
+        "--cell-size",
+        type=length,
+        metavar="SIZE",
+        help="in the unit of the CRS; by default the grid of the input, and for points their "
+        "mean spacing at this level",
+    )
+    raster.add_argument("--attribute", metavar="NAME", help="an attribute instead of the elevation")
+    raster.add_argument("--cog", action="store_true", help="write a cloud-optimised GeoTIFF")
+
+
+def surface_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return the options of a surface that is written as a raster."""
+    return {name: getattr(arguments, name) for name in ("cell_size", "attribute", "cog")}
+
+
+def surface_formats() -> str:
+    """Return the names of the formats of TINs and rasters, for help."""
+    meshes = ", ".join(row.name for row in MESH_FORMATS)
+    return f"a TIN (GPKG, {meshes}) or a raster (GeoTIFF, COG)"
+
+
+def surface_suffixes() -> str:
+    """Return the suffixes of TINs and rasters, for help."""
+    return any_of((PYRAMID_SUFFIX, *MESH_SUFFIXES, *RASTER_SUFFIXES))
 
 
 def add_overwrite_argument(parser: argparse.ArgumentParser) -> None:
@@ -123,7 +221,16 @@ def add_overwrite_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--overwrite", action="store_true", help="replace an output that exists")
 
 
-def _names(text: str) -> tuple[str, ...]:
+def length(text: str) -> float:
+    """Return a length from the command line."""
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a length above 0")
+    return value
+
+
+def names(text: str) -> tuple[str, ...]:
+    """Return a list of names from the command line."""
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
@@ -131,14 +238,28 @@ def _classes(text: str) -> tuple[int, ...]:
     try:
         classes = tuple(int(part) for part in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of classes such as 2,9") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of classes such as 2,9") from None
     if not all(0 <= number <= 255 for number in classes):
         raise argparse.ArgumentTypeError("classes are 0 to 255")
     return classes
+
+
+def _max_edge(text: str) -> float | str:
+    if text == "auto":
+        return text
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is neither a length above 0 nor auto")
+    return value
 
 
 def _weights(text: str) -> tuple[float, ...]:
     try:
         return tuple(float(part) for part in text.split(","))
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of numbers such as 1,0.5") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a list of numbers such as 1,0.5"
+        ) from None

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from wavelet_gis.cli.commands._options import add_overwrite_argument
+from wavelet_gis.cli.commands._options import add_overwrite_argument, names
 from wavelet_gis.cli.console import Console
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
+    from wavelet_gis.workflows.analyse import Analysis
+    from wavelet_gis.workflows.cluster import Labelled
 
-    from wavelet_gis.model.geo_pyramid import GeoPyramid
-
+ORDER = 80
 HELP = "Cluster the vertices by their scales, or learn classes and predict the rest."
-
-RASTER_SUFFIXES = (".tif", ".tiff")
-CLOUD_SUFFIXES = (".las", ".laz")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     clusters.add_argument(
         "--channels",
-        type=_names,
+        type=names,
         default=(),
         metavar="A,B",
         help="channels whose scales count; by default the geometry",
@@ -83,80 +77,61 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    from wavelet_core.errors import OptionError
-    from wavelet_gis.io.atomic import check_output, new_file
-    from wavelet_gis.io.pyramid_file import read_pyramid
-    from wavelet_gis.workflows.classify import cluster_summary
+    from wavelet_gis.workflows.cluster import check_label_output
+    from wavelet_gis.workflows.open import load
+    from wavelet_gis.workflows.save import save
 
-    suffix = Path(arguments.output).suffix.lower()
-    check_output(
+    is_learned = arguments.learn is not None
+    check_label_output(
         arguments.output,
+        is_learned=is_learned,
         overwrite=arguments.overwrite,
-        suffixes=(".gpkg", *RASTER_SUFFIXES, *CLOUD_SUFFIXES),
         inputs=(arguments.file,),
     )
-    if suffix in CLOUD_SUFFIXES and arguments.learn is None:
-        raise OptionError("clusters are no LAS classes; write .gpkg or .tif, or use --learn.")
-    geo = read_pyramid(arguments.file)
-    find = _clusters if arguments.learn is None else _classes
-    labels, confidence, figures = find(geo, arguments, console)
-    with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        _write(scratch, geo, labels, confidence, arguments)
-    summary = cluster_summary(geo, labels)
-    word = "cluster" if arguments.learn is None else "class"
-    rows = [
-        (row["label"], row["n_vertices"], f"{row['share']:.1%}", *map(float, row["rms"][::-1][:8]))
-        for row in summary["clusters"]
-    ]
-    spacings = [f"rms at {spacing:.3g}" for spacing in summary["spacings"][::-1][:8]]
-    console.table((word, "vertices", "share", *spacings), rows)
-    console.say(f"{len(rows)} {'clusters' if word == 'cluster' else 'classes'}; {arguments.output}")
-    console.figures({"output": str(arguments.output), **figures, **summary})
+    find = _classes if is_learned else _clusters
+    labelled = find(load(arguments.file), arguments, console)
+    save(labelled, arguments.output, overwrite=arguments.overwrite, cell_size=arguments.cell_size)
+    figures = labelled.figures()
+    _tell(labelled, figures, arguments.output, console)
+    console.figures({"output": str(arguments.output), **figures})
 
 
-def _clusters(
-    geo: GeoPyramid, arguments: argparse.Namespace, console: Console
-) -> tuple[NDArray[np.int64], NDArray[np.float64], dict[str, Any]]:
-    from wavelet_core.features.signature import energy_signature
-    from wavelet_gis.workflows.classify import cluster_vertices
+def _clusters(analysis: Analysis, arguments: argparse.Namespace, console: Console) -> Labelled:
+    from wavelet_gis.workflows.cluster import cluster
 
-    with console.progress("spectrum") as progress:
-        signature = energy_signature(geo.pyramid, arguments.channels, progress)
-    clusters = cluster_vertices(signature, arguments.count, arguments.method, arguments.seed)
-    figures = {
-        "method": arguments.method,
-        "n_clusters": clusters.n_clusters,
-        "explained": clusters.explained,
-    }
-    return clusters.labels, clusters.confidence, figures
+    with console.progress("clustering") as progress:
+        return cluster(
+            analysis,
+            count=arguments.count,
+            method=arguments.method,
+            channels=arguments.channels,
+            seed=arguments.seed,
+            progress=progress,
+        )
 
 
-def _classes(
-    geo: GeoPyramid, arguments: argparse.Namespace, console: Console
-) -> tuple[NDArray[np.int64], NDArray[np.float64], dict[str, Any]]:
-    import numpy as np
-
-    from wavelet_core.features.signature import plain_features, scale_features
-    from wavelet_gis.workflows.classify import (
-        learn_classes,
-        merge_labels,
-        spatial_folds,
-        validate_classes,
-    )
+def _classes(analysis: Analysis, arguments: argparse.Namespace, console: Console) -> Labelled:
+    from wavelet_gis.workflows.classify import merge_labels
+    from wavelet_gis.workflows.cluster import classify
     from wavelet_gis.workflows.labels import labels_from_las, labels_from_layer
 
     if arguments.learn == "las":
-        given = labels_from_las(geo, arguments.unlabelled)
+        given = labels_from_las(analysis.geo, arguments.unlabelled)
     else:
-        given = labels_from_layer(geo, arguments.learn, arguments.field)
-    given = merge_labels(given, arguments.merge)
-    with console.progress("spectrum") as progress:
-        features = scale_features(geo.pyramid, progress).joined_to(plain_features(geo.pyramid))
-    figures: dict[str, Any] = {"n_labelled": int(np.count_nonzero(given >= 0))}
-    if arguments.validate:
-        plan = geo.pyramid.synthesise().vertices[:, :2]
-        validation = validate_classes(features, given, spatial_folds(plan), arguments.seed)
-        figures["validation"] = validation.as_dict()
+        given = labels_from_layer(analysis.geo, arguments.learn, arguments.field)
+    with console.progress("learning") as progress:
+        return classify(
+            analysis,
+            merge_labels(given, arguments.merge),
+            validate=arguments.validate,
+            seed=arguments.seed,
+            progress=progress,
+        )
+
+
+def _tell(labelled: Labelled, figures: dict[str, Any], output: str, console: Console) -> None:
+    validation = labelled.validation
+    if validation is not None:
         console.say(f"accuracy in blocks of the map left out: {validation.accuracy:.1%}")
         console.table(
             ("class", "F1", *(f"as {c}" for c in validation.classes)),
@@ -165,46 +140,21 @@ def _classes(
                 for c, row in zip(validation.classes, validation.confusion, strict=True)
             ],
         )
-    classes = learn_classes(features, given, arguments.seed)
-    labels = np.where(given >= 0, given, classes.predicted)
-    return labels, np.where(given >= 0, 1.0, classes.confidence), figures
-
-
-def _write(
-    path: str | os.PathLike[str],
-    geo: GeoPyramid,
-    labels: NDArray[np.int64],
-    confidence: NDArray[np.float64],
-    arguments: argparse.Namespace,
-) -> None:
-    from wavelet_gis.io.vector import add_layers
-    from wavelet_gis.products.label_layer import label_layer
-    from wavelet_gis.products.vertex_raster import label_band, write_bands
-
-    name = "cluster" if arguments.learn is None else "class"
-    suffix = Path(path).suffix.lower()
-    if suffix in CLOUD_SUFFIXES:
-        from wavelet_gis.io.las import write_cloud
-        from wavelet_gis.workflows.labels import cloud_with_classes
-
-        write_cloud(path, cloud_with_classes(geo, labels))
-    elif suffix in RASTER_SUFFIXES:
-        mesh = geo.pyramid.synthesise()
-        bands = label_band(geo, mesh, labels, name, arguments.cell_size)
-        write_bands(path, bands, geo.system.wkt)
-    else:
-        add_layers(path, [label_layer(geo, labels, confidence, name)], geo.system)
-
-
-def _names(text: str) -> tuple[str, ...]:
-    return tuple(name.strip() for name in text.split(",") if name.strip())
+    rows = [
+        (row["label"], row["n_vertices"], f"{row['share']:.1%}", *map(float, row["rms"][::-1][:8]))
+        for row in figures["clusters"]
+    ]
+    spacings = [f"rms at {spacing:.3g}" for spacing in figures["spacings"][::-1][:8]]
+    console.table((labelled.name, "vertices", "share", *spacings), rows)
+    plural = {"cluster": "clusters", "class": "classes"}[labelled.name]
+    console.say(f"{len(rows)} {plural}; {output}")
 
 
 def _numbers(text: str) -> tuple[int, ...]:
     try:
         return tuple(int(part) for part in text.split(",") if part.strip())
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of classes such as 0,1") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of classes such as 0,1") from None
 
 
 def _pair(text: str) -> tuple[int, int]:
@@ -212,4 +162,4 @@ def _pair(text: str) -> tuple[int, int]:
         source, target = text.split("=")
         return int(source), int(target)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no pair such as 3=5") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a pair such as 3=5") from None

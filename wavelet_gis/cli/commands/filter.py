@@ -1,22 +1,14 @@
-"""``filter FILE OUT``: smooth, sharpen, isolate a band of scales, or take out noise."""
+"""``filter FILE OUT``: smooth, sharpen, isolate a range of scales, or take out noise."""
 
 from __future__ import annotations
 
 import argparse
-import os
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
 
-if TYPE_CHECKING:
-    from wavelet_gis.model.geo_pyramid import GeoPyramid
-
+ORDER = 60
 HELP = "Change chosen scales of a pyramid or take out noise; write a DEM, a LAS file or a pyramid."
-
-#: Stands for the standard deviation of the noise where it is not given.
-ESTIMATED = True
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,18 +21,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     scales = parser.add_argument_group("scales")
     scales.add_argument(
         "--gain",
+        dest="gains",
         type=_gain,
         action="append",
         default=[],
         metavar="LEVEL=G",
         help="multiply the details of a level: 0 drops them, 2 doubles them; again for others",
     )
-    band = scales.add_mutually_exclusive_group()
-    band.add_argument(
-        "--band", type=_levels, metavar="LO:HI", help="keep the details of these levels only"
+    kept = scales.add_mutually_exclusive_group()
+    kept.add_argument(
+        "--band",
+        dest="levels",
+        type=_levels,
+        metavar="LO:HI",
+        help="keep the details of these levels only",
     )
-    band.add_argument(
+    kept.add_argument(
         "--band-metres",
+        dest="metres",
         type=_metres,
         metavar="LO:HI",
         help="keep details of this size on the ground only (median edge length of the mesh they "
@@ -49,21 +47,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     scales.add_argument(
         "--no-coarse",
+        dest="drop_coarse",
         action="store_true",
-        help="leave out the coarsest surface too, so that the bands remain by themselves",
+        help="leave out the coarsest surface too, so that the details remain by themselves",
     )
     noise = parser.add_argument_group("noise")
     noise.add_argument(
         "--denoise",
         type=_sigma,
         nargs="?",
-        const=ESTIMATED,
+        const=True,  # to be estimated
+        default=False,
         metavar="SIGMA",
         help="take out white noise of this standard deviation, in the unit of z; estimated where "
         "it is not given. Before any gain",
     )
     noise.add_argument(
         "--pyramids",
+        dest="n_pyramids",
         type=int,
         default=8,
         metavar="N",
@@ -72,6 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     noise.add_argument(
         "--channel",
+        dest="channels",
         action="append",
         metavar="NAME",
         help="to take noise from (default z); again for others",
@@ -81,100 +83,37 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    from wavelet_core.errors import OptionError
-    from wavelet_gis.io.atomic import check_output, new_file
-    from wavelet_gis.io.pyramid_file import read_pyramid
-    from wavelet_gis.workflows.filtering import (
-        change_between,
-        chosen_gains,
-        denoised_record,
-        scaled_record,
-    )
+    from wavelet_gis.io.atomic import check_output
+    from wavelet_gis.workflows.filtering import filter_pyramid
+    from wavelet_gis.workflows.open import load, origin_kind
+    from wavelet_gis.workflows.reconstruct import check_restored_output
+    from wavelet_gis.workflows.save import save
 
     check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
-    asks_scales = bool(arguments.gain or arguments.band or arguments.band_metres)
-    if not asks_scales and not arguments.no_coarse and arguments.denoise is None:
-        raise OptionError("nothing to change; give --gain, --band, --band-metres or --denoise.")
-    geo = read_pyramid(arguments.file)
-    _check_suffix(arguments.output, geo)
-    gains = chosen_gains(geo, arguments.gain, levels=arguments.band, metres=arguments.band_metres)
-    changed = geo
-    figures: dict[str, Any] = {}
-    if arguments.denoise is not None:
-        with console.progress("denoising") as progress:
-            changed, sigmas = denoised_record(
-                changed,
-                None if arguments.denoise is ESTIMATED else arguments.denoise,
-                channels=tuple(arguments.channel or ("z",)),
-                n_pyramids=arguments.pyramids,
-                progress=progress,
-            )
-        figures = {"sigma": sigmas, "n_pyramids": arguments.pyramids}
-    if asks_scales or arguments.no_coarse:
-        changed = scaled_record(changed, gains, drops_coarse=arguments.no_coarse)
-        figures["gains"] = gains
-    with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        _write(scratch, arguments.output, changed, console)
-    for line in changed.history[len(geo.history) :]:
+    check_restored_output(
+        arguments.output,
+        origin_kind(arguments.file),
+        or_pyramid=True,
+        overwrite=arguments.overwrite,
+    )
+    analysis = load(arguments.file)
+    with console.progress("filtering") as progress:
+        filtered = filter_pyramid(
+            analysis,
+            gains=arguments.gains,
+            levels=arguments.levels,
+            metres=arguments.metres,
+            drop_coarse=arguments.drop_coarse,
+            denoise=arguments.denoise,
+            n_pyramids=arguments.n_pyramids,
+            channels=tuple(arguments.channels or ("z",)),
+            progress=progress,
+        )
+    save(filtered, arguments.output, overwrite=arguments.overwrite)
+    for line in filtered.changes:
         console.say(line)
     console.say(str(arguments.output))
-    rms, largest = change_between(geo, changed)
-    console.figures(
-        {
-            "output": str(arguments.output),
-            **figures,
-            "rms_change": rms,
-            "largest_change": largest,
-        }
-    )
-
-
-def _write(scratch: str | os.PathLike[str], output: str, geo: GeoPyramid, console: Console) -> None:
-    if Path(output).suffix.lower() == ".gpkg":
-        from wavelet_gis.io.pyramid_file import write_pyramid
-        from wavelet_gis.io.vector import add_layers
-        from wavelet_gis.products.layers import coarse_layers, detail_layers
-
-        with console.progress("writing") as progress:
-            write_pyramid(scratch, geo, progress)
-        add_layers(scratch, [*coarse_layers(geo), *detail_layers(geo)], geo.system)
-        return
-    from wavelet_core import TriangleMesh
-    from wavelet_gis.cli.commands.extract import write_tin
-    from wavelet_gis.io.las import write_cloud
-    from wavelet_gis.io.raster import write_dem
-    from wavelet_gis.model.dem import Dem
-
-    changed = geo.restore()
-    if isinstance(changed, Dem):
-        write_dem(scratch, changed, geo.system.wkt)
-    elif isinstance(changed, TriangleMesh):
-        write_tin(scratch, geo, geo.pyramid.synthesise(), geo.pyramid.n_levels)
-    else:
-        write_cloud(scratch, changed)
-
-
-def _check_suffix(output: str, geo: GeoPyramid) -> None:
-    """Refuse an output of another kind than the input was, before the long work."""
-    from wavelet_gis.errors import OutputFileError
-    from wavelet_gis.io.meshes import MESH_SUFFIXES
-    from wavelet_gis.workflows.open import CLOUD_SUFFIXES
-
-    suffix = Path(output).suffix.lower()
-    if suffix == ".gpkg":
-        return
-    fits, wanted = {
-        "points": (suffix in CLOUD_SUFFIXES, "a point cloud; give .las, .laz"),
-        "tin": (suffix in MESH_SUFFIXES, "a TIN; give .ply, .2dm, .obj"),
-        "raster": (
-            suffix not in (*CLOUD_SUFFIXES, *MESH_SUFFIXES, ""),
-            "a raster; give .tif",
-        ),
-    }[geo.source.kind]
-    if not fits:
-        raise OutputFileError(
-            f"{output}: the pyramid was made from {wanted} or, for a pyramid, .gpkg."
-        )
+    console.figures({"output": str(arguments.output), **filtered.figures()})
 
 
 def _gain(text: str) -> tuple[int, float]:
@@ -182,7 +121,7 @@ def _gain(text: str) -> tuple[int, float]:
     try:
         return int(level), float(gain)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no LEVEL=G such as 5=0.5") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not LEVEL=G, such as 5=0.5") from None
 
 
 def _levels(text: str) -> tuple[int, int]:
@@ -190,7 +129,7 @@ def _levels(text: str) -> tuple[int, int]:
     try:
         return int(low), int(high)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no LO:HI such as 2:4") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not LO:HI, such as 2:4") from None
 
 
 def _metres(text: str) -> tuple[float, float]:
@@ -200,11 +139,11 @@ def _metres(text: str) -> tuple[float, float]:
             raise ValueError
         return float(low or 0.0), float(high or "inf")
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no LO:HI such as 5:50 or 10:") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not LO:HI, such as 5:50 or 10:") from None
 
 
 def _sigma(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None

@@ -7,7 +7,8 @@ from typing import Any
 
 from wavelet_gis.cli.console import Console
 
-HELP = "Tell what a pyramid file holds: source, CRS, parameters, and size and errors by level."
+ORDER = 20
+HELP = "Show what a pyramid file holds: source, CRS, parameters, size and errors by level."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -62,6 +63,7 @@ def _lines(summary: dict[str, Any]) -> list[str]:
         f"software    {summary['format']['software']}, format {summary['format']['version']}",
     ]
     lines += [f"change      {change}" for change in summary["history"]]
+    lines += [f"note        {note['text']}" for note in summary.get("notes", [])]
     return lines
 
 

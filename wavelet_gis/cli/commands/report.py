@@ -7,6 +7,7 @@ import argparse
 from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
 
+ORDER = 90
 HELP = "Write the quality report of a pyramid: one HTML page that needs no network."
 
 

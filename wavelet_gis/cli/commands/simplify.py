@@ -6,31 +6,31 @@ import argparse
 from time import perf_counter
 
 from wavelet_gis.cli.commands._options import (
+    INPUTS,
     add_input_arguments,
     add_overwrite_argument,
+    add_surface_arguments,
     add_wavelet_arguments,
-    analysis_options,
-    open_input,
-)
-from wavelet_gis.cli.commands.extract import (
-    add_raster_arguments,
-    is_raster_output,
     length,
-    write_raster,
-    write_tin,
+    open_given,
+    surface_formats,
+    surface_options,
+    surface_suffixes,
+    wavelet_options,
 )
 from wavelet_gis.cli.console import Console
 
+ORDER = 50
 HELP = (
-    "Write the TIN of a number of vertices, or of an accuracy, with the least error: GPKG, PLY, "
-    "2DM, OBJ, STL, GLB, LandXML (.xml), DXF; or the raster of that TIN (GeoTIFF, COG)."
+    "Write the TIN of a number of vertices, or of an accuracy, with the least error, as "
+    f"{surface_formats()}."
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("input", help="a raster that GDAL reads, or a LAS, LAZ or COPC file")
-    parser.add_argument("output", help="a TIN or a raster, by its suffix")
+    parser.add_argument("input", help=INPUTS)
+    parser.add_argument("output", help=f"ending in {surface_suffixes()}")
     rule = parser.add_mutually_exclusive_group(required=True)
     rule.add_argument("--vertices", type=int, metavar="N", help="keep so many vertices")
     rule.add_argument(
@@ -40,7 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="keep so many that no input point is further off, vertically; in the unit of z",
     )
     rule.add_argument(
-        "--rmse", type=length, metavar="R", help="the same for the root mean square error"
+        "--rmse",
+        dest="max_rms",
+        type=length,
+        metavar="R",
+        help="the same for the root mean square error",
     )
     parser.add_argument(
         "--norm",
@@ -49,10 +53,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--no-fit",
-        action="store_true",
+        dest="fit",
+        action="store_false",
         help="keep the heights of the pyramid's level instead of fitting them to all input points",
     )
-    add_raster_arguments(parser)
+    add_surface_arguments(parser)
     add_input_arguments(parser)
     add_wavelet_arguments(parser)
     add_overwrite_argument(parser)
@@ -60,60 +65,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    import numpy as np
+    from wavelet_gis.workflows.save import check_surface_output, save
+    from wavelet_gis.workflows.simplify import simplify
 
-    from wavelet_core import analyse
-    from wavelet_core.accuracy.fitted_heights import fitted
-    from wavelet_core.mesh.location import surface_errors
-    from wavelet_gis.io.atomic import new_file
-    from wavelet_gis.model.geo_pyramid import GeoPyramid
-
-    is_raster = is_raster_output(arguments, arguments.input)
-    began = perf_counter()
-    terrain = open_input(arguments)
-    unit = terrain.frame.z_scale
-    rules = {
-        "target_vertices": arguments.vertices,
-        "max_error": None if arguments.max_error is None else arguments.max_error * unit,
-        "max_rms": None if arguments.rmse is None else arguments.rmse * unit,
-    }
-    options = analysis_options(arguments)
-    if arguments.norm is not None:
-        options["norm"] = arguments.norm
-    with console.progress("simplifying") as progress:
-        pyramid = analyse(terrain.mesh, **rules, **options, progress=progress)
-    mesh = pyramid.mesh(0)
-    if not arguments.no_fit and pyramid.parameters["norm"] == "rms":
-        mesh = fitted(mesh, terrain.mesh)
-    errors = surface_errors(mesh, terrain.mesh.vertices) / unit
-    covered = errors[np.isfinite(errors)]
-    geo = GeoPyramid(
-        pyramid=pyramid,
-        system=terrain.system,
-        frame=terrain.frame,
-        vertical_unit=terrain.vertical_unit,
-        source=terrain.source,
-        source_name=terrain.name,
+    options = surface_options(arguments)
+    check_surface_output(
+        arguments.output, overwrite=arguments.overwrite, inputs=(arguments.input,), **options
     )
-    with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        if is_raster:
-            write_raster(scratch, geo, mesh, arguments)
-        else:
-            write_tin(scratch, geo, mesh, 0)
-    figures = {
-        "output": str(arguments.output),
-        "n_input_vertices": terrain.mesh.n_vertices,
-        "n_vertices": mesh.n_vertices,
-        "n_triangles": mesh.n_faces,
-        "rmse": float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
-        "max_error": float(np.abs(covered).max(initial=0.0)),
-        "n_levels": pyramid.n_levels,
-        "seconds": round(perf_counter() - began, 3),
-    }
+    began = perf_counter()
+    terrain = open_given(arguments)
+    with console.progress("simplifying") as progress:
+        tin = simplify(
+            terrain,
+            vertices=arguments.vertices,
+            max_error=arguments.max_error,
+            max_rms=arguments.max_rms,
+            fit=arguments.fit,
+            progress=progress,
+            **{**wavelet_options(arguments), "norm": arguments.norm},
+        )
+    save(tin, arguments.output, overwrite=arguments.overwrite, **options)
+    figures = {**tin.figures(), "seconds": round(perf_counter() - began, 3)}
     console.say(
         f"{figures['n_vertices']:,} of {figures['n_input_vertices']:,} vertices, "
         f"{figures['n_triangles']:,} triangles; RMSE {figures['rmse']:.4g}, largest error "
         f"{figures['max_error']:.4g} ({terrain.vertical_unit}) at all input points; "
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
-    console.figures(figures)
+    console.figures({"output": str(arguments.output), **figures})

@@ -1,0 +1,167 @@
+"""What a user asked of an algorithm, read out of QGIS's parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from qgis.core import QgsProcessingFeedback
+
+from ..qgis_io.crs_and_progress import progress, require_running
+
+if TYPE_CHECKING:
+    from qgis.core import (
+        QgsCoordinateReferenceSystem,
+        QgsCoordinateTransformContext,
+        QgsProcessingAlgorithm,
+        QgsProcessingContext,
+        QgsProcessingFeatureSource,
+    )
+
+#: A choice that leaves it to the workflow, whose defaults are those of the command line.
+DEFAULT = "default"
+
+
+class Request:
+    """One run of an algorithm: its parameters, with the log and the cancel button that go with it.
+
+    Parameters
+    ----------
+    algorithm : QgsProcessingAlgorithm
+        Whose parameters.
+    parameters : dict
+        As QGIS hands them over; what a model leaves open is None.
+    context : QgsProcessingContext
+        In which they are read.
+    feedback : QgsProcessingFeedback, optional
+        The log; none before the run.
+    """
+
+    def __init__(
+        self,
+        algorithm: QgsProcessingAlgorithm,
+        parameters: dict[str, Any],
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback | None = None,
+    ) -> None:
+        self.algorithm = algorithm
+        self.parameters = parameters
+        self.context = context
+        self.feedback = feedback or QgsProcessingFeedback()
+
+    # What was asked for.
+
+    def has(self, name: str) -> bool:
+        """Return whether a parameter says anything, or an output is wanted."""
+        return self.parameters.get(name) not in (None, "")
+
+    def text(self, name: str) -> str:
+        """Return a text without blanks around it; "" where there is none."""
+        return self.algorithm.parameterAsString(self.parameters, name, self.context).strip()
+
+    def choice(self, name: str) -> str | None:
+        """Return what was chosen of a list; None where that is left to the workflow."""
+        chosen = self.text(name)
+        return None if chosen in ("", DEFAULT) else chosen
+
+    def flag(self, name: str) -> bool:
+        """Return whether a box is ticked."""
+        return self.algorithm.parameterAsBool(self.parameters, name, self.context)
+
+    def whole(self, name: str) -> int | None:
+        """Return a whole number, its default where it is left open, None where it has none."""
+        if self._is_open(name):
+            return None
+        return self.algorithm.parameterAsInt(self.parameters, name, self.context)
+
+    def number(self, name: str) -> float | None:
+        """Return a number, its default where it is left open, None where it has none."""
+        if self._is_open(name):
+            return None
+        return self.algorithm.parameterAsDouble(self.parameters, name, self.context)
+
+    def size(self, name: str) -> float | None:
+        """Return a length; None where it is left open or 0."""
+        return self.number(name) or None
+
+    def words(self, name: str) -> list[str]:
+        """Return the words of a list with commas."""
+        return [word.strip() for word in self.text(name).split(",") if word.strip()]
+
+    def whole_numbers(self, name: str) -> list[int]:
+        """Return the whole numbers of a list with commas.
+
+        Raises
+        ------
+        ValueError
+            One that is no whole number.
+        """
+        return [int(word) for word in self.words(name)]
+
+    def strings(self, name: str) -> list[str]:
+        """Return the names that were chosen of several, such as those of fields."""
+        return self.algorithm.parameterAsStrings(self.parameters, name, self.context)
+
+    def choices(self, name: str) -> list[str]:
+        """Return what was chosen of a list that allows several."""
+        return self.algorithm.parameterAsEnumStrings(self.parameters, name, self.context)
+
+    def pairs(self, name: str) -> list[tuple[Any, Any]]:
+        """Return the rows of a matrix of two columns; cells left empty do not count.
+
+        Raises
+        ------
+        ValueError
+            A cell without its partner.
+        """
+        cells = self.algorithm.parameterAsMatrix(self.parameters, name, self.context)
+        cells = [cell for cell in cells if cell not in (None, "")]
+        return list(zip(cells[::2], cells[1::2], strict=True))
+
+    def crs(self, name: str) -> QgsCoordinateReferenceSystem:
+        """Return a CRS; an invalid one where none was chosen."""
+        return self.algorithm.parameterAsCrs(self.parameters, name, self.context)
+
+    def input_file(self, name: str) -> str:
+        """Return the path of a file that is read, without the name of a layer in it."""
+        path = self.algorithm.parameterAsString(self.parameters, name, self.context)
+        return path.split("|")[0]
+
+    def source(self, name: str) -> QgsProcessingFeatureSource | None:
+        """Return the features of a layer; None where none was chosen."""
+        return self.algorithm.parameterAsSource(self.parameters, name, self.context)
+
+    # Where results go.
+
+    def output_file(self, name: str) -> str:
+        """Return the path of a file that is written; "" where it is not wanted."""
+        return self.algorithm.parameterAsFileOutput(self.parameters, name, self.context)
+
+    def output_layer(self, name: str) -> str:
+        """Return the path of a raster that is written; "" where it is not wanted."""
+        return self.algorithm.parameterAsOutputLayer(self.parameters, name, self.context)
+
+    # How it goes.
+
+    @property
+    def transforms(self) -> QgsCoordinateTransformContext:
+        """How coordinates are transformed in this project."""
+        return self.context.transformContext()
+
+    def say(self, text: str) -> None:
+        """Write a line to the log."""
+        self.feedback.pushInfo(text)
+
+    def stage(self, text: str) -> None:
+        """Tell what is being done; stop here if the user has cancelled."""
+        self.feedback.setProgressText(text)
+        require_running(self.feedback)
+
+    def progress(self, start: float = 0.0, stop: float = 1.0) -> Callable[[float], bool]:
+        """Return a progress function that drives a part of QGIS's bar."""
+        return progress(self.feedback, start, stop)
+
+    def _is_open(self, name: str) -> bool:
+        definition = self.algorithm.parameterDefinition(name)
+        has_default = definition is not None and definition.defaultValue() is not None
+        return self.parameters.get(name) is None and not has_default

@@ -1,0 +1,49 @@
+"""A surface out of a pyramid: its figures, and its way to every output that is wanted."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from qgis.core import QgsProcessingOutputNumber
+
+from ..ui.translation import tr
+from . import mesh_output, tin_output
+
+if TYPE_CHECKING:
+    from wavelet_gis.workflows.extract import Surface
+
+    from ..base import TerrainWaveletsAlgorithm
+    from .request import Request
+
+
+def add_error_outputs(algorithm: TerrainWaveletsAlgorithm, where: str) -> None:
+    """Declare the errors that `surface_figures` returns; ``where`` they are measured."""
+    for name, description in (
+        ("RMSE_SURFACE", tr("RMSE {}, in the unit of elevation").format(where)),
+        ("MAX_ERROR_SURFACE", tr("Largest error {}, in the unit of elevation").format(where)),
+        ("N_UNCOVERED", tr("Input points that the surface does not cover")),
+    ):
+        algorithm.addOutput(QgsProcessingOutputNumber(name, description))
+
+
+def surface_figures(surface: Surface) -> dict[str, Any]:
+    """Return size and errors of a surface; no errors where they are not known."""
+    figures: dict[str, Any] = {
+        "N_VERTICES": surface.mesh.n_vertices,
+        "N_FACES": surface.mesh.n_faces,
+    }
+    if surface.errors is not None:
+        figures["RMSE_SURFACE"] = surface.errors.rmse
+        figures["MAX_ERROR_SURFACE"] = surface.errors.max_error
+        figures["N_UNCOVERED"] = surface.errors.n_uncovered
+    return figures
+
+
+def write_surface(request: Request, surface: Surface) -> dict[str, str]:
+    """Write a surface to the outputs TIN, VERTICES, RASTER and MESH, those that are wanted."""
+    results = tin_output.write_surface(request, surface)
+    if request.has("RASTER"):
+        results["RASTER"] = mesh_output.write_raster(request, "RASTER", surface)
+    if request.has("MESH"):
+        results["MESH"] = mesh_output.write_mesh_file(request, "MESH", surface)
+    return results

@@ -1,0 +1,5 @@
+"""LAS, LAZ and COPC files: how their bytes lie, the decoder in its child, clouds in and out."""
+
+from wavelet_gis.io.las.cloud_file import ALIASES, NOISE_CLASSES, read_cloud, write_cloud
+
+__all__ = ["ALIASES", "NOISE_CLASSES", "read_cloud", "write_cloud"]

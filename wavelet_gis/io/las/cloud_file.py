@@ -1,0 +1,605 @@
+"""LAS, LAZ and COPC files in and out: laspy knows the dimensions, the bytes around are kept."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core.errors import MissingDependencyError
+from wavelet_gis.crs.frame import Georeference
+from wavelet_gis.crs.las import las_crs
+from wavelet_gis.errors import CrsWarning, InputFileError, OutputFileError, PointCloudWarning
+from wavelet_gis.io.las import block as las_block
+from wavelet_gis.io.las import laz_decoder
+from wavelet_gis.io.las.layout import (
+    LARGEST_COORDINATE,
+    RECORD_LENGTHS,
+    LasLayout,
+    laszip_record,
+    parse_layout,
+    read_layout,
+    records_of,
+)
+from wavelet_gis.model.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.ground import GROUND_CLASS, height_above_ground
+from wavelet_gis.notes import warn
+
+if TYPE_CHECKING:
+    from laspy import LasHeader
+    from laspy.point.record import PackedPointRecord
+
+__all__ = ["ALIASES", "NOISE_CLASSES", "read_cloud", "write_cloud"]
+
+#: Name of the attribute that is computed rather than read.
+HEIGHT_ABOVE_GROUND = "hag"
+
+#: What people call dimensions, beside the names that laspy gives them.
+ALIASES: dict[str, tuple[str, ...]] = {
+    "class": ("classification",),
+    "rgb": ("red", "green", "blue"),
+    "returns": ("return_number", "number_of_returns"),
+}
+
+#: ASPRS classes of points that hit nothing on the ground: low and high noise.
+NOISE_CLASSES = (7, 18)
+
+#: No points are compressed to less than one part in this; thousands of equal ones come near it.
+_MOST_COMPRESSED = 100_000
+
+#: Point formats with references to waveform packets.
+_WAVEFORM_FORMATS = (4, 5, 9, 10)
+
+
+def read_cloud(
+    path: str | os.PathLike[str],
+    *,
+    attributes: Sequence[str] = (),
+    classes: Sequence[int] | None = None,
+    carry: bool = True,
+    keep_noise: bool = False,
+    keep_withheld: bool = False,
+) -> tuple[PointCloud, Georeference]:
+    """Return the chosen points of a LAS or LAZ file, and what it tells of their coordinates.
+
+    Parameters
+    ----------
+    path : path
+        LAS 1.0 to 1.4, LAZ or COPC.
+    attributes : sequence of str
+        Dimensions to lift along: any that the file has, ``rgb`` for the three colours, ``hag``
+        for the height above the ground (class 2). An array-valued dimension gives one attribute
+        for each component.
+    classes : sequence of int, optional
+        Only points of these classes; the ground for ``hag`` is that of the whole file.
+    carry : bool
+        Keep the other dimensions too, to be given back untouched.
+    keep_noise : bool
+        Let points of the classes 7 and 18 (low and high noise) be part of the surface. By default
+        they are only carried, to be given back; a class named in `classes` is always kept.
+    keep_withheld : bool
+        The same for points with the withheld flag.
+
+    Raises
+    ------
+    InputFileError
+        When the file is missing, no LAS file, damaged, empty, or lacks what was asked for.
+    MissingDependencyError
+        When laspy, or lazrs for a LAZ file, is not installed.
+
+    Warns
+    -----
+    PointCloudWarning
+        What is odd about the file, and which points are no part of the surface.
+    CrsWarning
+        What is odd about its CRS.
+    """
+    name = os.fspath(path)
+    if os.path.isdir(name):
+        raise InputFileError(f"{name}: this is a folder; name the LAS or LAZ file in it.")
+    if not os.path.exists(name):
+        raise InputFileError(f"{name}: there is no such file; check the path.")
+    layout, header, points, tail, tail_at = _read_all(name)
+    array = points.array
+    if len(array) < layout.n_points:
+        _tell(
+            "points_missing",
+            "{name}: the header announces {n_announced} points, the file ends after {n_points}; "
+            "those are used",
+            name=name,
+            n_announced=layout.n_points,
+            n_points=len(array),
+        )
+    lifted = [
+        attribute
+        for wanted in dict.fromkeys(attributes)
+        for attribute in _attributes(name, wanted, points, header)
+    ]
+    _check_names(name, lifted)
+    chosen = _chosen(name, points, classes)
+    aside = _aside(name, points, chosen, classes, keep_noise, keep_withheld)
+    integers = np.empty((np.count_nonzero(chosen) if chosen is not None else len(array), 3), "i4")
+    for k, axis in enumerate("XYZ"):
+        integers[:, k] = _select(array[axis], chosen)
+    cloud = PointCloud(
+        integers=integers,
+        scales=np.array(layout.scales, dtype=np.float64),
+        offsets=np.array(layout.offsets, dtype=np.float64),
+        attributes=tuple(replace(a, values=_select(a.values, chosen)) for a in lifted),
+        carried=_carried(points, lifted, chosen) if carry else {},
+        header=np.frombuffer(layout.block, np.uint8),
+        evlrs=np.frombuffer(tail, np.uint8),
+        n_in_file=len(array),
+        classes=None if classes is None else tuple(int(c) for c in classes),
+        aside=aside,
+        evlrs_at=tail_at,
+    )
+    _check_extent(name, layout, points)
+    _tell_of_waveforms(name, layout)
+    place = las_crs(_projection_records(layout, tail, tail_at))
+    for note in place.notes:
+        warn(CrsWarning, "las_crs", "{name}: {fact}", name=name, fact=note, stacklevel=2)
+    return cloud, place
+
+
+def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
+    """Write the points with the header, VLRs and dimensions they came with.
+
+    Parameters
+    ----------
+    path : path
+        ``.laz`` is compressed, anything else is not.
+    cloud : PointCloud
+        What to write. Where it is what was read, an uncompressed file is byte for byte the one
+        that was read if that was uncompressed too.
+
+    Raises
+    ------
+    OutputFileError
+        When the points cannot be compressed, or need lazrs.
+    """
+    was = parse_layout("the stored LAS header", cloud.header.tobytes())
+    layout = las_block.rebuilt(was)
+    record = _record_of(cloud, layout)
+    content = np.ascontiguousarray(record.array).view(np.uint8).reshape(cloud.n_points, -1)
+    for attribute in cloud.attributes:
+        if attribute.dimension == HEIGHT_ABOVE_GROUND and not _has_dimension(record, attribute):
+            layout = las_block.described(layout, attribute.name, "Height above ground")
+            heights = attribute.values.astype("<f4").reshape(-1, 1).view(np.uint8)
+            content = np.hstack([content, heights])
+    compressor = _laz_record(path, layout) if Path(path).suffix.lower() == ".laz" else None
+    if compressor is not None:
+        layout = las_block.rebuilt(layout, laszip=bytes(compressor.record_data()))
+    block, tail = layout.block, cloud.evlrs.tobytes()
+    if cloud.n_points != was.n_points or cloud.is_altered:
+        block = las_block.with_counts(block, cloud, _return_numbers(record))
+    with open(path, "wb") as stream:
+        stream.write(block)
+        _write_points(path, stream, content.reshape(-1), layout.point_format, compressor)
+        end = stream.seek(0, os.SEEK_END)
+        stream.write(tail)
+        stream.seek(0)
+        stream.write(las_block.moved(block, was, tail, cloud.evlrs_at, end))
+    if compressor is not None:
+        _verify(path, layout, content)
+
+
+def _laspy() -> Any:
+    try:
+        import laspy
+    except ImportError as error:
+        raise MissingDependencyError(
+            "reading and writing LAS files needs laspy; install it with "
+            "'pip install \"laspy[lazrs]\"'."
+        ) from error
+    return laspy
+
+
+def _tell(code: str, template: str, *options: str, **figures: Any) -> None:
+    warn(PointCloudWarning, code, template, *options, stacklevel=3, **figures)
+
+
+def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes, int | None]:
+    """Return the layout, laspy's view of it, the points, and what follows them."""
+    _laspy()
+    with open(name, "rb") as stream:
+        layout = read_layout(name, stream)
+        if layout.n_points == 0:
+            raise InputFileError(f"{name}: the file holds no points; get it again.")
+        header = _laspy_header(name, layout)
+        try:
+            points = _points(name, layout, header, stream)
+        except MemoryError as error:
+            raise InputFileError(
+                f"{name}: the header announces more points than memory can hold; if that is no "
+                "mistake, cut the file into tiles."
+            ) from error
+        for note in layout.notes:
+            _tell("las_header", "{name}: {fact}", name=name, fact=note)
+        start = layout.points_end
+        if layout.is_compressed:
+            places = [place for place in (layout.evlr_start, layout.waveform_start) if place]
+            start = min(places, default=os.fstat(stream.fileno()).st_size)
+        stream.seek(start)
+        tail, tail_at, note = las_block.tail_of(stream.read(), start, layout)
+        if note:
+            _tell("las_header", "{name}: {fact}", name=name, fact=note)
+    return layout, header, points, tail, tail_at
+
+
+def _laspy_header(name: str, layout: LasLayout) -> LasHeader:
+    """Return laspy's header, which knows the dimensions of the records."""
+    laspy = _laspy()
+    try:
+        header = laspy.LasHeader.read_from(io.BytesIO(las_block.for_laspy(layout)))
+        n_bytes = header.point_format.dtype().itemsize
+    # laspy lets whatever a damaged record provokes in it pass: struct, Unicode, value errors.
+    except Exception as error:
+        reason = str(error).splitlines()[0].rstrip(".") if str(error) else type(error).__name__
+        raise InputFileError(
+            f"{name}: this cannot be read as LAS or LAZ ({reason}); the file is damaged, get it "
+            "again."
+        ) from error
+    if n_bytes != layout.record_length:
+        raise InputFileError(
+            f"{name}: the record on the extra dimensions describes points of {n_bytes} bytes, the "
+            f"header of {layout.record_length}; the file is damaged, get it again."
+        )
+    return header
+
+
+def _points(name: str, layout: LasLayout, header: LasHeader, stream: BinaryIO) -> PackedPointRecord:
+    laspy, dtype = _laspy(), header.point_format.dtype()
+    if not layout.is_compressed:
+        stream.seek(layout.points_start)
+        array = np.fromfile(stream, dtype, layout.n_points)
+        return laspy.PackedPointRecord(array, header.point_format)
+    if find_spec("lazrs") is None:
+        raise MissingDependencyError(
+            f"{name}: reading LAZ needs lazrs; install it with 'pip install lazrs'."
+        )
+    n_bytes = os.fstat(stream.fileno()).st_size - layout.points_start
+    if layout.n_points * layout.record_length > _MOST_COMPRESSED * n_bytes:
+        raise InputFileError(
+            f"{name}: the header announces {layout.n_points} points in {n_bytes} compressed bytes; "
+            "the file is damaged, get it again."
+        )
+    array = np.empty(layout.n_points, dtype)
+    job = laz_decoder.Job(
+        path=name,
+        start=layout.points_start,
+        record=laszip_record(name, layout).data,
+        record_length=layout.record_length,
+        n_points=layout.n_points,
+    )
+    try:
+        laz_decoder.decoded(job, array.view(np.uint8))
+    except laz_decoder.DecodeError as error:
+        raise InputFileError(
+            f"{name}: the compressed points cannot be read ({error}); the file is damaged, get it "
+            "again."
+        ) from error
+    return laspy.PackedPointRecord(array, header.point_format)
+
+
+def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> None:
+    """Refuse coordinates that no CRS has, and tell of a header that claims others than there are.
+
+    A header with other bounds than its points is how a damaged scale or offset shows.
+    """
+    for k, axis in enumerate("xyz"):
+        stored = points.array[axis.upper()]
+        ends = np.array([stored.min(), stored.max()]) * layout.scales[k] + layout.offsets[k]
+        low, high = float(ends.min()), float(ends.max())
+        if max(-low, high) > LARGEST_COORDINATE:
+            raise InputFileError(
+                f"{name}: {axis} runs from {low:g} to {high:g}, which no CRS has; the scales and "
+                "offsets in the header are wrong, or the file is damaged: get it again."
+            )
+        # Many writers round the bounds, to a unit in the last place or to the next number.
+        slack = 1.5 * abs(layout.scales[k]) + 1e-9 * max(-low, high) + 5e-4 * (high - low)
+        told = layout.low[k], layout.high[k]
+        if not (abs(told[0] - low) <= slack and abs(told[1] - high) <= slack):
+            _tell(
+                "header_extent",
+                "{name}: the header says that {axis} runs from {told[0]:.10g} to {told[1]:.10g}, "
+                "the points run from {found[0]:.10g} to {found[1]:.10g}; if that is no old "
+                "mistake, the file is damaged",
+                name=name,
+                axis=axis,
+                told=told,
+                found=(low, high),
+            )
+
+
+def _projection_records(
+    layout: LasLayout, tail: bytes, tail_at: int | None
+) -> list[tuple[int, bytes]]:
+    """Return the records on the CRS: number and content."""
+    first = 0 if tail_at is None else layout.evlr_start - tail_at
+    found = [(r, layout.block) for r in layout.vlrs]
+    if layout.n_evlrs:
+        found += [(r, tail) for r in records_of(tail, first, layout.n_evlrs, extended=True)]
+    return [
+        (r.record_id, block[r.data_start : r.end])
+        for r, block in found
+        if r.user_id == "LASF_Projection"
+    ]
+
+
+def _aside(
+    name: str,
+    points: PackedPointRecord,
+    chosen: NDArray[np.bool_] | None,
+    classes: Sequence[int] | None,
+    keep_noise: bool,
+    keep_withheld: bool,
+) -> NDArray[np.bool_] | None:
+    """Return which of the chosen points are carried only, and say how many they are."""
+    of_point = _select(np.array(points["classification"]), chosen)
+    noise_classes = [] if keep_noise else [c for c in NOISE_CLASSES if c not in (classes or ())]
+    is_noise = np.isin(of_point, noise_classes)
+    is_withheld = _select(np.array(points["withheld"]).astype(bool), chosen)
+    if keep_withheld:
+        is_withheld = np.zeros_like(is_withheld)
+    aside = is_noise | is_withheld
+    n_aside = int(np.count_nonzero(aside))
+    if n_aside == 0:
+        return None
+    parts = [
+        f"{np.count_nonzero(mask)} {what}"
+        for mask, what in (
+            (is_withheld, "with the withheld flag"),
+            (is_noise & ~is_withheld, "of the noise classes 7 and 18"),
+        )
+        if mask.any()
+    ]
+    options = [
+        option
+        for mask, option in ((is_withheld, "keep_withheld"), (is_noise, "keep_noise"))
+        if mask.any()
+    ]
+    ways = " and ".join(f"{{{k}}}" for k in range(len(options)))
+    if n_aside == len(aside):
+        raise InputFileError(
+            "{name}: all points are left out of the surface ({parts}); keep them with "
+            + ways
+            + ".",
+            *options,
+            name=name,
+            parts=" and ".join(parts),
+        )
+    _tell(
+        "points_aside",
+        "{name}: {n_aside} of {n_points} points are left out of the surface ({parts}); they are "
+        f"carried along, {ways} let{'s' * (len(options) == 1)} them in",
+        *options,
+        name=name,
+        n_aside=n_aside,
+        n_points=len(aside),
+        parts=" and ".join(parts),
+    )
+    return aside
+
+
+def _attributes(
+    name: str, wanted: str, points: PackedPointRecord, header: LasHeader
+) -> list[PointAttribute]:
+    available = list(points.point_format.dimension_names)
+    if wanted not in available and wanted in ALIASES:
+        return [
+            attribute
+            for part in ALIASES[wanted]
+            for attribute in _attributes(name, part, points, header)
+        ]
+    if wanted not in available and wanted == HEIGHT_ABOVE_GROUND:
+        return [_height_attribute(points, header)]
+    matches = [d for d in available if d == wanted] or [
+        d for d in available if d.lower() == wanted.lower()
+    ]
+    if not matches or matches[0] in ("X", "Y", "Z"):
+        choices = ", ".join(d for d in available if d not in ("X", "Y", "Z"))
+        raise InputFileError(
+            f"{name}: there is no dimension {wanted!r}; the file has {choices} (and hag can be "
+            "computed)."
+        )
+    return _dimension(matches[0], points)
+
+
+def _dimension(dimension: str, points: PackedPointRecord) -> list[PointAttribute]:
+    info = points.point_format.dimension_by_name(dimension)
+    packed = dimension not in (points.array.dtype.names or ())
+    values = np.array(points[dimension]) if packed else points.array[dimension]
+    n_components = 1 if values.ndim == 1 else values.shape[1]
+    scales = np.ones(n_components) if info.scales is None else np.asarray(info.scales)
+    offsets = np.zeros(n_components) if info.offsets is None else np.asarray(info.offsets)
+    if n_components == 1:
+        column = values if values.ndim == 1 else values[:, 0]
+        component = None if values.ndim == 1 else 0
+        return [
+            PointAttribute(
+                dimension, dimension, column, component, float(scales[0]), float(offsets[0])
+            )
+        ]
+    return [
+        PointAttribute(
+            f"{dimension}_{k}", dimension, values[:, k], k, float(scales[k]), float(offsets[k])
+        )
+        for k in range(n_components)
+    ]
+
+
+def _height_attribute(points: PackedPointRecord, header: LasHeader) -> PointAttribute:
+    integers = np.column_stack([points.array[axis] for axis in "XYZ"])
+    coordinates = integers * np.asarray(header.scales) + np.asarray(header.offsets)
+    is_ground = (np.array(points["classification"]) == GROUND_CLASS) & ~np.array(
+        points["withheld"]
+    ).astype(bool)
+    heights = height_above_ground(coordinates, is_ground)
+    return PointAttribute(HEIGHT_ABOVE_GROUND, HEIGHT_ABOVE_GROUND, heights)
+
+
+def _check_names(name: str, lifted: list[PointAttribute]) -> None:
+    seen: set[str] = set()
+    for attribute in lifted:
+        if attribute.name in seen:
+            raise InputFileError(
+                f"{name}: attribute {attribute.name!r} is asked for twice; name it once."
+            )
+        seen.add(attribute.name)
+
+
+def _chosen(
+    name: str, points: PackedPointRecord, classes: Sequence[int] | None
+) -> NDArray[np.bool_] | None:
+    if classes is None:
+        return None
+    of_point = np.array(points["classification"])
+    chosen: NDArray[np.bool_] = np.isin(of_point, list(classes))
+    if not chosen.any():
+        present = ", ".join(str(c) for c in np.unique(of_point))
+        raise InputFileError(
+            f"{name}: no point has class {', '.join(map(str, classes))}; the classes in the file "
+            f"are {present}."
+        )
+    return chosen
+
+
+def _select(values: NDArray[Any], chosen: NDArray[np.bool_] | None) -> NDArray[Any]:
+    return np.ascontiguousarray(values if chosen is None else values[chosen])
+
+
+def _carried(
+    points: PackedPointRecord, lifted: list[PointAttribute], chosen: NDArray[np.bool_] | None
+) -> dict[str, NDArray[Any]]:
+    """Return the fields of the records that the pyramid does not hold.
+
+    A lifted sub-field (the class of formats 0 to 5 shares its byte with flags) stays in its
+    byte, and so do the other components of an array.
+    """
+    whole = {a.dimension for a in lifted if a.component is None}
+    names = points.array.dtype.names or ()
+    return {
+        name: _select(points.array[name], chosen)
+        for name in names
+        if name not in ("X", "Y", "Z") and name not in whole
+    }
+
+
+def _put(record: PackedPointRecord, attribute: PointAttribute) -> None:
+    """Put the stored values of an attribute in its dimension."""
+    if attribute.dimension in (record.array.dtype.names or ()):
+        field = record.array[attribute.dimension]
+        if attribute.component is None:
+            field[:] = attribute.values
+        else:
+            field[:, attribute.component] = attribute.values
+        return
+    largest = record.point_format.dimension_by_name(attribute.dimension).max or 0
+    record[attribute.dimension] = np.minimum(attribute.values, largest)
+
+
+def _has_dimension(record: PackedPointRecord, attribute: PointAttribute) -> bool:
+    return attribute.name in list(record.point_format.dimension_names)
+
+
+def _record_of(cloud: PointCloud, layout: LasLayout) -> PackedPointRecord:
+    """Return the point records, every field in its place."""
+    header = _laspy_header("the stored LAS header", layout)
+    record = _laspy().PackedPointRecord.zeros(cloud.n_points, header.point_format)
+    for name, values in cloud.carried.items():
+        if name in (record.array.dtype.names or ()) and name not in ("X", "Y", "Z"):
+            record.array[name] = values
+    for k, axis in enumerate("XYZ"):
+        record.array[axis] = cloud.integers[:, k]
+    for attribute in cloud.attributes:
+        if attribute.dimension != HEIGHT_ABOVE_GROUND or _has_dimension(record, attribute):
+            _put(record, attribute)
+    return record
+
+
+def _return_numbers(record: PackedPointRecord) -> NDArray[np.integer]:
+    return np.array(record["return_number"])
+
+
+def _laz_record(path: str | os.PathLike[str], layout: LasLayout) -> Any:
+    """Return lazrs' record on the compression of such points."""
+    try:
+        import lazrs
+    except ImportError as error:
+        raise MissingDependencyError(
+            f"{path}: writing LAZ needs lazrs; install it with 'pip install lazrs'."
+        ) from error
+    n_extra = layout.record_length - RECORD_LENGTHS[layout.point_format]
+    try:
+        return lazrs.LazVlr.new_for_compression(layout.point_format, n_extra)
+    except lazrs.LazrsError as error:
+        raise _not_compressible(path, layout.point_format, error) from error
+
+
+def _write_points(
+    path: str | os.PathLike[str],
+    stream: BinaryIO,
+    content: NDArray[np.uint8],
+    point_format: int,
+    laz: Any,
+) -> None:
+    if laz is None:
+        stream.write(content.data)
+        return
+    import lazrs
+
+    try:
+        # One thread: a pool of them would hang in a process that is forked later.
+        compressor = lazrs.LasZipCompressor(stream, laz)
+        compressor.compress_many(content)
+        compressor.done()
+    except lazrs.LazrsError as error:
+        raise _not_compressible(path, point_format, error) from error
+
+
+def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np.uint8]) -> None:
+    """Read compressed points back: lazrs loses some waveform references without a word."""
+    back = np.empty_like(content)
+    job = laz_decoder.Job(
+        path=os.fspath(path),
+        start=layout.points_start,
+        record=laszip_record(os.fspath(path), layout).data,
+        record_length=content.shape[1],
+        n_points=len(content),
+    )
+    try:
+        laz_decoder.decoded(job, back)
+    except laz_decoder.DecodeError as error:
+        raise _not_compressible(path, layout.point_format, error) from error
+    if not np.array_equal(back, content):
+        n_other = int(np.count_nonzero((back != content).any(axis=1)))
+        raise _not_compressible(
+            path, layout.point_format, f"{n_other} of {len(content)} points come back changed"
+        )
+
+
+def _not_compressible(path: Any, point_format: int, why: object) -> OutputFileError:
+    return OutputFileError(
+        f"{path}: points of format {point_format} cannot be written as LAZ ({why}); write .las."
+    )
+
+
+def _tell_of_waveforms(name: str, layout: LasLayout) -> None:
+    if layout.point_format not in _WAVEFORM_FORMATS or layout.waveform_start:
+        return
+    where = "another file (.wdp)" if layout.has_outside_waveforms else "no place the header names"
+    _tell(
+        "waveforms",
+        "{name}: the points refer to waveforms in {where}; their references are carried, the "
+        "waveform samples themselves are not",
+        name=name,
+        where=where,
+    )

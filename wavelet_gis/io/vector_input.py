@@ -1,0 +1,163 @@
+"""Points and triangles out of vector layers, through pyogrio and shapely."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_gis.errors import InputFileError
+
+__all__ = ["VectorTerrain", "read_vector", "vector_terrain"]
+
+_POINTS, _POLYGONS = {0, 4}, {3, 6}  # type ids of shapely: single and multi
+
+
+class VectorTerrain(NamedTuple):
+    """What a layer holds: points, or triangles.
+
+    points : (n_points, 3) float64, or None
+    attributes : (n_points, n_attributes) float64
+    attribute_names : tuple of str
+    corners : (n_faces, 3, 3) float64, or None
+    wkt : str or None, the CRS
+    """
+
+    points: NDArray[np.float64] | None
+    attributes: NDArray[np.float64]
+    attribute_names: tuple[str, ...]
+    corners: NDArray[np.float64] | None
+    wkt: str | None
+
+
+def read_vector(
+    path: str | os.PathLike[str],
+    *,
+    layer: str | None = None,
+    z_field: str | None = None,
+    attributes: tuple[str, ...] = (),
+) -> VectorTerrain:
+    """Return the points or triangles in a vector file.
+
+    Parameters
+    ----------
+    path : path
+        Any vector file that GDAL reads.
+    layer : str, optional
+        Where the file holds several.
+    z_field, attributes
+        See `vector_terrain`.
+
+    Raises
+    ------
+    InputFileError
+        When the file cannot be read, or `vector_terrain` refuses it.
+    """
+    import pyogrio
+    import shapely
+
+    name = os.fspath(path)
+    wanted = [*([z_field] if z_field else []), *attributes]
+    try:
+        if layer is None:
+            layer = _only_layer(name, pyogrio.list_layers(name))
+        meta, _, geometry, columns = pyogrio.raw.read(name, layer=layer, columns=wanted)
+    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, ValueError) as error:
+        reason = str(error).splitlines()[0].rstrip(".")
+        raise InputFileError(f"{name}: the layer cannot be read ({reason}).") from error
+    table = dict(zip(meta["fields"], columns, strict=True))
+    shapes = shapely.from_wkb(geometry)
+    return vector_terrain(name, shapes, table, meta["crs"], z_field=z_field, attributes=attributes)
+
+
+def _only_layer(name: str, layers: NDArray[Any]) -> str:
+    """Return the one layer with shapes, which need not be named."""
+    spatial = [str(layer) for layer, kind in layers if kind is not None]
+    if len(spatial) == 1:
+        return spatial[0]
+    if not spatial:
+        raise InputFileError(f"{name}: the layer cannot be read (there is none with shapes).")
+    raise InputFileError(
+        "{name}: there are the layers {layers}; name one by {0}.",
+        "layer",
+        name=name,
+        layers=", ".join(spatial),
+    )
+
+
+def vector_terrain(
+    name: str,
+    shapes: NDArray[Any],
+    table: Any,
+    wkt: str | None,
+    *,
+    z_field: str | None = None,
+    attributes: tuple[str, ...] = (),
+) -> VectorTerrain:
+    """Return the points or triangles among shapes.
+
+    Parameters
+    ----------
+    name : str
+        For messages.
+    shapes : (n,) array of shapely geometries
+        Points, or triangles as polygons; empty ones are left out.
+    table : mapping of str to (n,) arrays
+        The fields.
+    wkt : str or None
+        The CRS.
+    z_field : str, optional
+        Field with the elevation of points; by default z of the geometry.
+    attributes : tuple of str
+        Fields of points to lift along.
+
+    Raises
+    ------
+    InputFileError
+        Lines, polygons that are no triangles, no elevation, or no such field.
+    """
+    import shapely
+
+    missing = [field for field in (z_field, *attributes) if field and field not in table]
+    if missing:
+        raise InputFileError(f"{name}: there is no field {missing[0]!r}.")
+    filled = ~(shapely.is_missing(shapes) | shapely.is_empty(shapes))
+    shapes = shapes[filled]
+    kinds = set(shapely.get_type_id(shapes).tolist())
+    if kinds and kinds <= _POINTS:
+        points, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
+        rows = np.flatnonzero(filled)[owner]
+        if z_field is not None:
+            points[:, 2] = np.asarray(table[z_field], dtype=np.float64)[rows]
+        elif np.isnan(points[:, 2]).all():
+            raise InputFileError(
+                "{name}: the points have no z; name the field with the elevation by {0}.",
+                "z_field",
+                name=name,
+            )
+        columns = [np.asarray(table[field], dtype=np.float64)[rows] for field in attributes]
+        values = np.column_stack(columns) if columns else np.empty((len(points), 0))
+        return VectorTerrain(points, values, attributes, None, wkt)
+    if kinds and kinds <= _POLYGONS:
+        return VectorTerrain(None, np.empty((0, 0)), (), _corners(name, shapes), wkt)
+    raise InputFileError(
+        f"{name}: the layer holds neither points nor triangles; a terrain is made of these."
+    )
+
+
+def _corners(name: str, shapes: NDArray[Any]) -> NDArray[np.float64]:
+    import shapely
+
+    parts = shapely.get_parts(shapes)
+    counts = shapely.get_num_coordinates(parts)
+    if not (counts == 4).all():
+        raise InputFileError(
+            f"{name}: a polygon has {int(counts[counts != 4][0]) - 1} corners; a TIN is made of "
+            "triangles."
+        )
+    rings = shapely.get_coordinates(parts, include_z=True).reshape(-1, 4, 3)
+    if np.isnan(rings).any():
+        raise InputFileError(f"{name}: the triangles have no z; give a layer of type Polygon Z.")
+    return np.ascontiguousarray(rings[:, :3])

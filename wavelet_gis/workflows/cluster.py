@@ -1,0 +1,227 @@
+"""Pyramid to labelled vertices: clusters of alike scales, or classes learned from labels."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import Progress
+from wavelet_core.errors import OptionError
+from wavelet_core.features.signature import energy_signature, plain_features, scale_features
+from wavelet_gis.io.atomic import check_output
+from wavelet_gis.io.formats import (
+    CLOUD_SUFFIXES,
+    PYRAMID_SUFFIX,
+    RASTER_SUFFIXES,
+    suffix_of,
+)
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.products.label_layer import label_layer
+from wavelet_gis.products.layers import Layer
+from wavelet_gis.products.vertex_raster import Bands, label_band
+from wavelet_gis.progress import part_of
+from wavelet_gis.workflows.classify import (
+    Validation,
+    cluster_summary,
+    cluster_vertices,
+    learn_classes,
+    spatial_folds,
+    validate_classes,
+)
+from wavelet_gis.workflows.labels import cloud_with_classes
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+
+__all__ = ["Labelled", "check_label_output", "classify", "cluster"]
+
+
+@dataclass(frozen=True, slots=True)
+class Labelled:
+    """The vertices of a pyramid's input, each with a label.
+
+    Attributes
+    ----------
+    geo : GeoPyramid
+        The pyramid.
+    labels : (n_vertices,) int64
+        Below 0: none.
+    confidence : (n_vertices,) float64
+        How clearly a vertex has its label, 0 to 1.
+    name : {"cluster", "class"}
+        What a label is.
+    found : dict
+        How the labels were found, as JSON-able values.
+    validation : Validation or None
+        Of classes, where it was asked for.
+    """
+
+    geo: GeoPyramid
+    labels: NDArray[np.int64]
+    confidence: NDArray[np.float64]
+    name: Literal["cluster", "class"]
+    found: dict[str, Any]
+    validation: Validation | None = None
+
+    def summary(self) -> dict[str, Any]:
+        """Return size and spectrum of every label; see `cluster_summary`."""
+        return cluster_summary(self.geo, self.labels)
+
+    def layer(self) -> Layer:
+        """Return the labelled vertices as a layer."""
+        return label_layer(self.geo, self.labels, self.confidence, self.name)
+
+    def raster(self, cell_size: float | None = None) -> Bands:
+        """Return the labels as a raster: each cell has that of the vertex nearest in plan."""
+        mesh = self.geo.pyramid.synthesise()
+        return label_band(self.geo, mesh, self.labels, self.name, cell_size)
+
+    def write(self, path: str | os.PathLike[str], *, cell_size: float | None = None) -> None:
+        """Write points, a raster or, of classes, a point cloud, by the suffix.
+
+        See `wavelet_gis.workflows.save.save`.
+        """
+        check_label_output(path, is_learned=self.name == "class", overwrite=True)
+        suffix = suffix_of(path)
+        if suffix in CLOUD_SUFFIXES:
+            from wavelet_gis.io.las import write_cloud
+
+            write_cloud(path, cloud_with_classes(self.geo, self.labels))
+        elif suffix in RASTER_SUFFIXES:
+            from wavelet_gis.products.vertex_raster import write_bands
+
+            write_bands(path, self.raster(cell_size), self.geo.system.wkt)
+        else:
+            from wavelet_gis.io.vector import add_layers
+
+            add_layers(path, [self.layer()], self.geo.system)
+
+    def figures(self) -> dict[str, Any]:
+        """Return how the labels were found, their sizes and spectra, as JSON-able values."""
+        validation = {} if self.validation is None else {"validation": self.validation.as_dict()}
+        return {**self.found, **validation, **self.summary()}
+
+
+def check_label_output(
+    path: str | os.PathLike[str],
+    *,
+    is_learned: bool,
+    overwrite: bool = False,
+    inputs: tuple[str | os.PathLike[str], ...] = (),
+) -> None:
+    """Refuse, before the long work, an output that labels cannot be written to.
+
+    Parameters
+    ----------
+    path : path
+        Where they are wanted.
+    is_learned : bool
+        Whether they are classes; clusters are no LAS classes.
+    overwrite, inputs
+        See `wavelet_gis.io.atomic.check_output`.
+
+    Raises
+    ------
+    OutputFileError
+        See `wavelet_gis.io.atomic.check_output`.
+    OptionError
+        Clusters into a point cloud.
+    """
+    suffixes = (PYRAMID_SUFFIX, *RASTER_SUFFIXES, *CLOUD_SUFFIXES)
+    check_output(path, overwrite=overwrite, suffixes=suffixes, inputs=inputs)
+    if suffix_of(path) in CLOUD_SUFFIXES and not is_learned:
+        raise OptionError(
+            "clusters are no LAS classes; write .gpkg or .tif, or learn classes with {0}.", "learn"
+        )
+
+
+def cluster(
+    data: HoldsPyramid | GeoPyramid,
+    *,
+    count: int | None = None,
+    method: Literal["kmeans", "mixture"] = "kmeans",
+    channels: Sequence[str] = (),
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Labelled:
+    """Return the vertices of a pyramid's input in clusters of alike scales.
+
+    Parameters
+    ----------
+    data : Analysis, Filtered or GeoPyramid
+        The pyramid.
+    count : int, optional
+        Number of clusters; by default found from the data.
+    method : {"kmeans", "mixture"}
+        See `wavelet_gis.workflows.classify.cluster_vertices`.
+    channels : sequence of str
+        Channels whose scales count; by default the geometry.
+    seed : int
+        Of samples and starts; the same seed gives the same clusters.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Returns
+    -------
+    Labelled
+        Clusters are numbered from the smooth to the rough.
+    """
+    geo = pyramid_of(data)
+    signature = energy_signature(geo.pyramid, tuple(channels), part_of(progress, 0.0, 0.9))
+    clusters = cluster_vertices(signature, count, method, seed)
+    found = {
+        "method": method,
+        "n_clusters": clusters.n_clusters,
+        "explained": clusters.explained,
+    }
+    return Labelled(geo, clusters.labels, clusters.confidence, "cluster", found)
+
+
+def classify(
+    data: HoldsPyramid | GeoPyramid,
+    labels: NDArray[np.int64],
+    *,
+    validate: bool = False,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Labelled:
+    """Return the class of every vertex, learned from those that have one.
+
+    Parameters
+    ----------
+    data : Analysis, Filtered or GeoPyramid
+        The pyramid.
+    labels : (n_vertices,) int64
+        Below 0: not known; see `wavelet_gis.workflows.labels`. A label that is known stays.
+    validate : bool
+        Whether blocks of the map are predicted from the others, to tell how well that goes.
+    seed : int
+        Of samples.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    OptionError
+        Fewer than two classes among the labels.
+    """
+    geo = pyramid_of(data)
+    scales = scale_features(geo.pyramid, part_of(progress, 0.0, 0.5))
+    features = scales.joined_to(plain_features(geo.pyramid))
+    validation = None
+    if validate:
+        plan = geo.pyramid.synthesise().vertices[:, :2]
+        validation = validate_classes(features, labels, spatial_folds(plan), seed)
+    classes = learn_classes(features, labels, seed)
+    is_known = labels >= 0
+    return Labelled(
+        geo,
+        np.where(is_known, labels, classes.predicted),
+        np.where(is_known, 1.0, classes.confidence),
+        "class",
+        {"n_labelled": int(np.count_nonzero(is_known))},
+        validation,
+    )

@@ -1,0 +1,188 @@
+"""Pyramid to a surface: one level, or any size or accuracy between two, and its way into a file."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import TriangleMesh
+from wavelet_core.accuracy.between_levels import PartialMesh, mesh_of_accuracy, mesh_of_size
+from wavelet_core.errors import OptionError
+from wavelet_core.mesh.location import Cover, surface_errors
+from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
+
+__all__ = ["Surface", "SurfaceErrors", "extract", "measured"]
+
+
+class SurfaceErrors(NamedTuple):
+    """Vertical errors of a surface at all input vertices, in the input's unit of z.
+
+    rmse, max_error : float
+    n_uncovered : int, input vertices that no triangle covers, which have no error
+    """
+
+    rmse: float
+    max_error: float
+    n_uncovered: int
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """A TIN of a pyramid.
+
+    Attributes
+    ----------
+    geo : GeoPyramid
+        Gives place and CRS.
+    mesh : TriangleMesh
+        In the working frame.
+    vertex_ids : (n_vertices,) int64
+        Ids of its vertices in the input.
+    level : int
+        The level that it is, or, of a size between two, the finer one.
+    errors : SurfaceErrors or None
+        None where they are not known.
+    """
+
+    geo: GeoPyramid
+    mesh: TriangleMesh
+    vertex_ids: NDArray[np.int64]
+    level: int
+    errors: SurfaceErrors | None = None
+
+    @property
+    def file_mesh(self) -> TriangleMesh:
+        """The mesh in the coordinates of the input."""
+        return self.geo.file_mesh(self.mesh)
+
+    def write(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        cell_size: float | None = None,
+        attribute: str | None = None,
+        cog: bool = False,
+    ) -> dict[str, int]:
+        """Write it as a TIN or a raster; see `wavelet_gis.workflows.save.save`.
+
+        Parameters
+        ----------
+        path : path
+            A file that does not exist yet.
+        cell_size, attribute, cog
+            Of a raster; see `wavelet_gis.workflows.save.write_surface_raster`.
+
+        Returns
+        -------
+        dict of str to int
+            Rows, columns and cells without data of a raster; empty for a TIN.
+        """
+        check_surface_output(
+            path, overwrite=True, cell_size=cell_size, attribute=attribute, cog=cog
+        )
+        if suffix_of(path) in RASTER_SUFFIXES:
+            return write_surface_raster(
+                path, self.geo, self.mesh, cell_size=cell_size, attribute=attribute, cog=cog
+            )
+        write_tin(path, self.geo, self.mesh, self.vertex_ids, f"level_{self.level:02d}")
+        return {}
+
+    def figures(self) -> dict[str, Any]:
+        """Return size and errors as JSON-able values."""
+        sizes = {"n_vertices": self.mesh.n_vertices, "n_triangles": self.mesh.n_faces}
+        if self.errors is None:
+            return sizes
+        return {**sizes, "rmse": self.errors.rmse, "max_error": self.errors.max_error}
+
+
+def measured(
+    mesh: TriangleMesh,
+    points: NDArray[np.float64],
+    z_scale: float,
+    cover: Cover | None = None,
+) -> SurfaceErrors:
+    """Return the vertical errors of a surface.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        In the working frame.
+    points : (n_points, 3) float64
+        What was measured, in the working frame.
+    z_scale : float
+        Working units in one of the input's unit of z.
+    cover : Cover, optional
+        Of the points on the mesh, where it is known already.
+    """
+    errors = surface_errors(mesh, points, cover) / z_scale
+    covered = errors[np.isfinite(errors)]
+    return SurfaceErrors(
+        float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
+        float(np.abs(covered).max(initial=0.0)),
+        len(errors) - len(covered),
+    )
+
+
+def extract(
+    data: HoldsPyramid | GeoPyramid,
+    *,
+    level: int | None = None,
+    vertices: int | None = None,
+    max_error: float | None = None,
+) -> Surface:
+    """Return a surface of a pyramid; with no rule the coarsest level.
+
+    Parameters
+    ----------
+    data : Analysis, Filtered or GeoPyramid
+        The pyramid.
+    level : int, optional
+        0 is the coarsest, the number of levels the input.
+    vertices : int, optional
+        Instead: just so many.
+    max_error : float, optional
+        Instead: the smallest found with no input vertex farther off, vertically, in the input's
+        unit of z.
+
+    Returns
+    -------
+    Surface
+        With its errors where the pyramid's file tells them.
+
+    Raises
+    ------
+    OptionError
+        More than one rule, or a size or an accuracy that the pyramid does not have.
+    PyramidError
+        A level that the pyramid does not have.
+    """
+    geo = pyramid_of(data)
+    if sum(rule is not None for rule in (level, vertices, max_error)) > 1:
+        raise OptionError("give one of {0}, {1} and {2}.", "level", "vertices", "max_error")
+    if vertices is not None:
+        return _between(geo, mesh_of_size(geo.pyramid, vertices))
+    if max_error is not None:
+        return _between(geo, mesh_of_accuracy(geo.pyramid, max_error * geo.frame.z_scale))
+    chosen = level or 0
+    mesh = geo.pyramid.mesh(chosen)
+    return Surface(geo, mesh, geo.pyramid.vertex_ids(chosen), chosen, _errors_at(geo, chosen))
+
+
+def _between(geo: GeoPyramid, part: PartialMesh) -> Surface:
+    is_level = part.mesh.n_vertices == geo.pyramid.n_vertices(part.level)
+    errors = _errors_at(geo, part.level) if is_level else None
+    return Surface(geo, part.mesh, part.vertex_ids, part.level, errors)
+
+
+def _errors_at(geo: GeoPyramid, level: int) -> SurfaceErrors | None:
+    errors = geo.errors_at(level)
+    if errors is None:
+        return None
+    return SurfaceErrors(errors.rmse_surface, errors.max_error_surface, errors.n_uncovered)

@@ -1,0 +1,162 @@
+"""Terrain to the TIN of a size, or of an accuracy, with the least error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Unpack
+
+from wavelet_core import Progress
+from wavelet_core import analyse as core_analyse
+from wavelet_core.accuracy.fitted_heights import fitted
+from wavelet_core.errors import OptionError
+from wavelet_core.mesh.location import cover_of
+from wavelet_gis.model.terrain import Terrain
+from wavelet_gis.notes import Note, collected
+from wavelet_gis.progress import Clock, part_of
+from wavelet_gis.workflows.analyse import Analysis
+from wavelet_gis.workflows.extract import Surface, measured
+from wavelet_gis.workflows.options import (
+    WaveletOptions,
+    core_options,
+    note_moved_outline,
+    note_unreached_size,
+    require_terrain,
+    working_rules,
+)
+
+__all__ = ["Simplified", "simplify"]
+
+
+@dataclass(frozen=True, slots=True)
+class Simplified(Surface):
+    """The TIN of a size, or of an accuracy.
+
+    Attributes
+    ----------
+    terrain : Terrain
+        What was simplified.
+    is_fitted : bool
+        Whether the heights are fitted to all input vertices by least squares; otherwise they are
+        those of the pyramid's coarsest level.
+    seconds : dict of str to float
+        What the parts of the work took.
+    """
+
+    terrain: Terrain | None = None
+    is_fitted: bool = False
+    seconds: dict[str, float] | None = None
+
+    @property
+    def notes(self) -> tuple[Note, ...]:
+        """What is worth telling about the input and its analysis."""
+        return self.geo.notes
+
+    def analysis(self, *, measure: bool = True, progress: Progress | None = None) -> Analysis:
+        """Return the reversible pyramid whose coarsest level has the triangles of this TIN.
+
+        Parameters
+        ----------
+        measure : bool
+            Whether the errors of every level are measured.
+        progress : callable, optional
+            Called with a fraction in [0, 1]; the work stops when it returns False.
+        """
+        assert self.terrain is not None
+        finest = self.geo.pyramid.synthesise()
+        terrain = self.terrain.with_notes(list(self.geo.notes))
+        geo = terrain.geo_pyramid(self.geo.pyramid, finest)
+        return Analysis(geo.with_errors(progress, finest) if measure else geo)
+
+    def figures(self) -> dict[str, Any]:
+        """Return sizes and errors as JSON-able values."""
+        pyramid = self.geo.pyramid
+        return {
+            "n_input_vertices": pyramid.n_vertices(pyramid.n_levels),
+            **Surface.figures(self),
+            "n_levels": pyramid.n_levels,
+            "stopped_by": None if pyramid.stop is None else pyramid.stop.reason,
+        }
+
+
+def simplify(
+    terrain: Terrain,
+    *,
+    vertices: int | None = None,
+    max_error: float | None = None,
+    max_rms: float | None = None,
+    fit: bool = True,
+    progress: Progress | None = None,
+    on_stage: Callable[[str], None] | None = None,
+    **options: Unpack[WaveletOptions],
+) -> Simplified:
+    """Return the TIN of a number of vertices, or of an accuracy, with the least error.
+
+    Parameters
+    ----------
+    terrain : Terrain
+        From `wavelet_gis.open`.
+    vertices : int, optional
+        Keep so many vertices.
+    max_error : float, optional
+        Instead: keep so many that no input vertex is farther off, vertically; in the input's unit
+        of z.
+    max_rms : float, optional
+        Instead: the same for the root mean square error.
+    fit : bool
+        Fit the heights to all input vertices by least squares where the root mean square is what
+        is kept small; a fit would spoil the largest error.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+    on_stage : callable, optional
+        Called with the name of each part of the work as it begins: ``simplify``, ``fit``,
+        ``errors``.
+    **options
+        See `wavelet_gis.workflows.options.WaveletOptions`.
+
+    Raises
+    ------
+    OptionError
+        Not just one of the three rules, or options that contradict each other.
+    Cancelled
+        ``progress`` returned False.
+    """
+    require_terrain(terrain)
+    if sum(rule is not None for rule in (vertices, max_error, max_rms)) != 1:
+        raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
+    clock = Clock(on_stage)
+    with collected() as notes:
+        clock.stage("simplify")
+        pyramid = core_analyse(
+            terrain.mesh,
+            progress=part_of(progress, 0.0, 0.95),
+            **working_rules(  # type: ignore[arg-type]
+                terrain.frame, target_vertices=vertices, max_error=max_error, max_rms=max_rms
+            ),
+            **core_options(options),
+        )
+        note_unreached_size(pyramid, vertices)
+        note_moved_outline(terrain.mesh, pyramid.mesh(0), options.get("outline_tolerance"))
+    clock.stage("fit")
+    mesh = pyramid.mesh(0)
+    # Fitting moves no vertex sideways, so the points are located once for both.
+    cover = cover_of(mesh, terrain.mesh.vertices[:, :2])
+    is_fitted = fit and pyramid.parameters["norm"] == "rms"
+    if is_fitted:
+        mesh = fitted(mesh, terrain.mesh, cover=cover)
+    clock.stage("errors")
+    # Of a cloud these are all points of the surface: those merged with a vertex count too.
+    points = terrain.points_for_errors()
+    known = cover if len(points) == terrain.mesh.n_vertices else None
+    errors = measured(mesh, points, terrain.frame.z_scale, known)
+    noted = terrain.with_notes([*terrain.notes, *notes])
+    return Simplified(
+        geo=noted.uncorrected(pyramid),
+        mesh=mesh,
+        vertex_ids=pyramid.vertex_ids(0),
+        level=0,
+        errors=errors,
+        terrain=noted,
+        is_fitted=is_fitted,
+        seconds=clock.seconds(),
+    )
