@@ -32,8 +32,8 @@ def order_rings(start, stop, faces, indptr, star, kind, ring, ring_size, bad_nei
         doubled[vertex[order[same]]] = True
     if doubled.any():  # no surface: the loop says which edge, of the first such vertex
         v = int(np.argmax(doubled))
-        plain = getattr(kernels.order_rings, "py_func", kernels.order_rings)
-        plain(v, v + 1, faces, indptr, star, kind, ring, ring_size, bad_neighbour)
+        arrays = (faces, indptr, star, kind, ring, ring_size, bad_neighbour)
+        kernels.order_rings.loops(v, v + 1, *arrays)
         return
 
     following = _match(key_before, key_after, by_after)

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._kernels.surface_choice import CANDIDATE, TAKEN
 from ._csr import expanded
-from .half_edges import after, before, find_twins, rings_of, set_outgoing
+from .half_edges import after, before, rings_of
 
 
 def find_cheapest(start, stop, active, mesh, state, cost, key, wins):
@@ -81,9 +81,12 @@ def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, 
         is_it = mesh.origin[half_edge] == source
         mesh.origin[half_edge[is_it]] = onto[is_it]
     k = place - indptr[row]
-    closes = with_face & ((k == 0) | (k == size[row] - 1))
+    closes = np.flatnonzero(with_face & ((k == 0) | (k == size[row] - 1)))
+    apex = np.where(
+        k[closes] == 0, ring[np.minimum(place[closes] + 1, len(ring) - 1)], ring[place[closes]]
+    )
     face_lives[ring_faces[closes]] = False
-    _link_again(mesh, face_lives)
+    _close_faces(ring_faces[closes], apex, mesh, face_lives)
 
 
 def _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken):
@@ -126,12 +129,19 @@ def _contains(sorted_keys, keys):
     return sorted_keys[np.minimum(place, len(sorted_keys) - 1)] == keys
 
 
-def _link_again(mesh, face_lives):
-    faces = np.flatnonzero(face_lives)
-    half_edges = (3 * faces[:, None] + np.arange(3)).ravel()
-    live = mesh._replace(
-        origin=mesh.origin[half_edges], twin=np.empty(len(half_edges), dtype=np.int32)
-    )
-    find_twins(0, 0, None, None, live)
-    mesh.twin[half_edges] = np.where(live.twin >= 0, half_edges[live.twin], -1)
-    set_outgoing(half_edges, mesh)
+def _close_faces(faces, apex, mesh, face_lives):
+    """Let the two sides at the apex of each closed face meet, and those beyond them."""
+    half_edge = 3 * faces.astype(np.int64)
+    for corner in range(3):
+        half_edge = np.where(
+            mesh.origin[3 * faces + corner] == apex, 3 * faces.astype(np.int64) + corner, half_edge
+        )
+    beyond = np.full(len(mesh.twin), -1, dtype=np.int64)  # the other of the two sides
+    beyond[half_edge], beyond[before(half_edge)] = before(half_edge), half_edge
+    live = (3 * np.flatnonzero(face_lives)[:, None] + np.arange(3)).ravel()
+    twin = mesh.twin[live].astype(np.int64)
+    open_ = np.flatnonzero((twin >= 0) & ~face_lives[twin // 3])
+    while len(open_):
+        twin[open_] = mesh.twin[beyond[twin[open_]]]
+        open_ = open_[(twin[open_] >= 0) & ~face_lives[twin[open_] // 3]]
+    mesh.twin[live] = twin

@@ -429,8 +429,6 @@ def _update_corners(level, block, rows, j, targets):
             rate = rate - np.where(has_preceding, moments.slope[preceding, i], zero)
             shift = factor * share * detail[:, i]
             change += (2.0 * rate + stiffness * shift) * shift
-            terms += np.abs(shift) * (
-                2.0 * np.abs(rate) + moments.vertex_weight[u] * np.abs(shift)
-            )
+            terms += np.abs(shift) * (2.0 * np.abs(rate) + moments.vertex_weight[u] * np.abs(shift))
             rz[rows, corner, i] += shift
     return change, terms, rz

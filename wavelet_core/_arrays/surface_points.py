@@ -59,9 +59,7 @@ def _hand_over_rows(
         is_cut, ends_at_target, px, py, qx, qy, along = cut
         moved = np.flatnonzero(is_cut[of])
         on = of[moved]
-        x[moved], y[moved], _ = nearest_on_edge(
-            x[moved], y[moved], px[on], py[on], qx[on], qy[on]
-        )
+        x[moved], y[moved], _ = nearest_on_edge(x[moved], y[moved], px[on], py[on], qx[on], qy[on])
         point_x[moved], point_y[moved] = ax[on] + x[moved], ay[on] + y[moved]
         own = np.where(is_cut, np.where(ends_at_target, 0, n_wedges - 1), own)
         at_b = np.where(is_cut, np.where(ends_at_target, 1.0 - along, 0.0), at_b)
