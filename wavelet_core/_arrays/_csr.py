@@ -27,8 +27,8 @@ def summed(
     """
     n = len(start)
     rows = np.concatenate([np.arange(n), row])
-    sums: NDArray[np.float64] = np.bincount(rows, np.concatenate([start, values]), minlength=n)
-    return sums
+    weights = np.concatenate([start, values])
+    return np.bincount(rows, weights, minlength=n).astype(np.float64, copy=False)
 
 
 def blocks(sizes: NDArray[np.integer], limit: int) -> list[slice]:

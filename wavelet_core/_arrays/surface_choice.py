@@ -93,7 +93,7 @@ def _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken):
     """Refuse what an edge forbids that a collapse before it in the list has made.
 
     No two odd vertices are neighbours, so a collapse takes no edge between vertices that stay; it
-    only makes edges from its target to the rest of its ring. One that two would make is the first's.
+    only makes edges from its target to the rest of its ring. Of two that make one, the first does.
     """
     a = ring[indptr[:-1]]
     n = len(mesh.outgoing)

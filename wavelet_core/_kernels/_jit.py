@@ -39,6 +39,9 @@ ENGINES = ("compiled", "arrays", "loops")
 MAX_LOOPS = 50_000
 #: Inputs with more vertices than this are told that numba would be faster.
 ANNOUNCED_FROM = 100_000
+#: Inputs of up to so many vertices are done on whole arrays before numba, which takes some 25 s to
+#: compile the kernels the first time ever, would have begun.
+SMALL_INPUT = 10_000
 
 _numba: Any = None
 if not os.environ.get(DISABLE_VARIABLE):
@@ -82,6 +85,22 @@ def engine(name: str) -> Iterator[None]:
         _chosen.reset(token)
 
 
+def fitting_engine(n_vertices: int) -> contextlib.AbstractContextManager[None]:
+    """Return the engine for a piece of work: whole arrays for small inputs while numba is cold."""
+    is_free = not (_chosen.get() or os.environ.get(ENGINE_VARIABLE))
+    if is_free and HAS_NUMBA and n_vertices <= SMALL_INPUT and not _is_compiled():
+        return engine("arrays")
+    return contextlib.nullcontext()
+
+
+def _is_compiled() -> bool:
+    """Whether a kernel has been compiled, in this process or into the cache of one before."""
+    return any(step.is_compiled for step in _steps)
+
+
+_steps: list[Kernel] = []
+
+
 class Kernel:
     """A step that the algorithms call, in the form of the present engine."""
 
@@ -89,6 +108,16 @@ class Kernel:
         functools.update_wrapper(self, loops)
         self.loops = loops
         self.compiled = njit(loops)
+        _steps.append(self)
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether it need not be compiled before it runs, as far as numba lets one see."""
+        try:
+            index = Path(self.compiled._cache._cache_file._index_path)
+        except AttributeError:
+            return False
+        return bool(self.compiled.signatures) or index.exists()
 
     @functools.cached_property
     def arrays(self) -> Callable[..., Any] | None:
