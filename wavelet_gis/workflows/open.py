@@ -138,11 +138,12 @@ def open_terrain(
             "concave",
             path=path,
         )
-    if attributes or classes is not None:
+    if attributes or classes is not None or class_channels:
         raise InputFileError(
-            "{path}: {0} and {1} are for point clouds; leave them out for a raster.",
+            "{path}: {0}, {1} and {2} are for point clouds; leave them out for a raster.",
             "attributes",
             "classes",
+            "class_channels",
             path=path,
         )
     dem, place = read_dem(path, band=band, nodata=nodata, offline=offline)
