@@ -1665,6 +1665,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>
+    <source>a layer reprojected before</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/wording.py"/>
     <source>the layer's properties</source>
     <translation type="unfinished"></translation>
   </message>

@@ -58,6 +58,16 @@ class TestDem:
         back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "back.tif")})
         assert_same_raster(path, back["DEM"])
 
+    def test_a_mesh_file_of_degrees_is_in_metres(self, run, tmp_path):
+        from qgis.core import QgsMeshLayer
+
+        dem = write_raster(
+            tmp_path / "dem.tif", hills().astype("float32"), None, 4326, (7.0, 44.0), 1 / 1200
+        )
+        run("simplifydem", {"INPUT": dem, "VERTICES": 60, "MESH": str(tmp_path / "m.2dm")})
+        assert "UTM zone 32N" in (tmp_path / "m.prj").read_text("utf-8")
+        assert QgsMeshLayer(str(tmp_path / "m.2dm"), "mesh", "mdal").extent().width() > 1000
+
     def test_nodata_set_in_the_layer_properties_is_a_hole(self, run, tmp_path):
         from qgis.core import QgsRasterLayer, QgsRasterRange
 
