@@ -43,6 +43,8 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
     GROUP: ClassVar[str]
     #: Packages needed beyond NumPy and SciPy.
     PACKAGES: ClassVar[tuple[dependencies.Package, ...]] = ()
+    #: What is being run, as Python takes it; for the metadata of its outputs.
+    command: str = ""
 
     def createInstance(self) -> TerrainWaveletsAlgorithm:
         """Return a new algorithm of the same kind."""
@@ -154,6 +156,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
             check_outputs(self, parameters, context)
         except WaveletError as error:
             raise QgsProcessingException(self.in_words(error)) from error
+        self.command = self.asPythonCommand(parameters, context)
         self.take_layers(request)
         return True
 
@@ -195,6 +198,12 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
             ) from error
         self._log_notes(request, notes)
         return results
+
+    def require_numba(self, n_vertices: int) -> None:
+        """Refuse more vertices than plain Python takes, with the remedy for this platform."""
+        refusal = dependencies.refusal_without_numba(n_vertices)
+        if refusal:
+            raise QgsProcessingException(refusal)
 
     def work(self, request: Request) -> Values:
         """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""

@@ -224,6 +224,8 @@ class FilterLevels(PyramidAlgorithm):
 
         before = self.geo_pyramid(request)
         sigma = request.number("SIGMA_OF_NOISE")
+        if request.flag("DENOISE") and request.whole("PYRAMIDS"):
+            self.require_numba(before.pyramid.n_vertices(before.pyramid.n_levels))
         request.stage(tr("Filtering"))
         filtered = filter_pyramid(
             before,
@@ -263,7 +265,7 @@ class FilterLevels(PyramidAlgorithm):
                 tr("A difference of DEMs needs a pyramid that was made from a DEM.")
             )
         write_dem(path, filtered.difference(), crs_of(filtered.before), request.feedback)
-        styles.style_output(request.context, path, styles.style_difference)
+        request.finish("DIFFERENCE", path, styles.style_difference)
         return {"DIFFERENCE": path}
 
 

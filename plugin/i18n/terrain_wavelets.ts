@@ -670,12 +670,37 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Give one of three: a level, a number of vertices, or the largest error.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points the mean spacing of the level's vertices.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Instead of a level: exactly this many, from those of the coarsest level to all.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Instead of a level: the smallest size found at which no input point is farther above or below the surface, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Level, or the finer one of two</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -715,12 +740,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the analysis says how large and how accurate each level is.</source>
+    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Instead of a level, give a number of vertices or the largest error, and you get a size between two levels. The log shows how large and how accurate each level is; level 0 is the coarsest.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Synthesising level {}</source>
+    <source>Synthesising the surface</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1095,11 +1120,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Largest error</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1250,7 +1270,12 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>How many steps of analysis at most (the paper's L). Each removes up to a quarter of the vertices. Fewer come out where nothing more can go. Empty for the default, or, with a rule below, for as many as that takes.</source>
+    <source>How far the outline, holes included, may move in plan, in the unit of x and y (metres for a geographic CRS), with the &lt;i&gt;surface&lt;/i&gt; partition. Empty for 0: vertices of the outline are removed only where it runs straight, which limits how coarse a level can become. The log tells how much the area changes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>How many steps of analysis at most (the paper's L). Each removes up to a quarter of the vertices. Fewer come out where nothing more can go. Empty for as many as a rule below takes; without one for 24, not counting those that thin flat parts alone, or 12 with another partition than &lt;i&gt;surface&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1321,6 +1346,11 @@
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>There is no attribute {} to be weighted; {}.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Tolerance of the outline</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1621,6 +1651,11 @@
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
     <source>missing Python package: {names}. Install it {remedy} and start QGIS again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>{} vertices are too many without the Python package numba (at most {}). Install it {} and start QGIS again, or take a coarser input.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

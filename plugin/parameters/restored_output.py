@@ -96,7 +96,7 @@ def _write_dem(request: Request, restored: Reconstruction) -> dict[str, Any]:
         return {}
     assert isinstance(restored.original, Dem)
     write_dem(path, restored.original, crs_of(restored.geo), request.feedback)
-    styles.style_output(request.context, path, styles.style_hillshade)
+    request.finish("DEM", path, styles.style_hillshade)
     return {"DEM": path}
 
 

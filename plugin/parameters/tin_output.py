@@ -63,5 +63,5 @@ def write_layer(request: Request, name: str, geo: GeoPyramid, layer: Layer) -> s
     if sink is None:
         raise QgsProcessingException(request.algorithm.invalidSinkError(request.parameters, name))
     vectors.add_layer(sink, layer, request.feedback)
-    styles.style_output(request.context, destination, partial(styles.apply_qml, qml=layer.style))
+    request.finish(name, destination, partial(styles.apply_qml, qml=layer.style))
     return destination

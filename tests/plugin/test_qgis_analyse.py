@@ -172,6 +172,21 @@ class TestLevels:
         assert read_raster(made["RASTER"])["bytes"] == read_raster(back["DEM"])["bytes"]
         assert made["RMSE_SURFACE"] == pytest.approx(0.0, abs=1e-9)
 
+    def test_a_size_or_an_accuracy_between_two_levels(self, run, refused, pyramid):
+        parameters = {"INPUT": pyramid["OUTPUT"], "TIN": "TEMPORARY_OUTPUT"}
+        size = (pyramid["COARSE_VERTICES"] + pyramid["N_VERTICES"]) // 2
+        log = Log()
+        made = run("extractlevel", {**parameters, "VERTICES_WANTED": size}, feedback=log)
+        assert made["N_VERTICES"] == size
+        assert 0 < made["FOUND_LEVEL"] <= pyramid["N_LEVELS"]
+        assert any(line.split()[:1] == ["0"] for line in log.lines), "the table of levels"
+        coarse = run("extractlevel", {**parameters, "MAX_ERROR": 1e9})
+        fine = run("extractlevel", {**parameters, "MAX_ERROR": 0.2})
+        assert coarse["N_VERTICES"] == pyramid["COARSE_VERTICES"]
+        assert fine["N_VERTICES"] > coarse["N_VERTICES"]
+        both = {**parameters, "MAX_ERROR": 1.0, "LEVEL": 1}
+        assert "one of three" in refused("extractlevel", both)
+
     def test_a_level_that_is_not_there(self, refused, pyramid):
         message = refused(
             "extractlevel", {"INPUT": pyramid["OUTPUT"], "LEVEL": 9, "TIN": "TEMPORARY_OUTPUT"}
