@@ -305,7 +305,7 @@ def _written(request: Request, labelled: Labelled) -> Values:
         write_bands(path, bands, crs_of(labelled.geo), request.feedback)
         request.finish("RASTER", path, partial(styles.style_labels, name=labelled.name))
         results["RASTER"] = path
-    if request.has("OUTPUT"):
+    if request.wants("OUTPUT"):
         results["OUTPUT"] = tin_output.write_layer(
             request, "OUTPUT", labelled.geo, labelled.layer()
         )

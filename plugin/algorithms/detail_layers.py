@@ -155,7 +155,7 @@ class DetailLayers(PyramidAlgorithm):
             request.progress(0.0, 0.6)((level - first + 1) / (last - first + 1))
         request.finish("OUTPUT", destination, styles.style_details)
         results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
-        if request.has("ENERGY"):
+        if request.wants("ENERGY"):
             results["ENERGY"] = _write_energy(request, geo)
         return results
 

@@ -54,8 +54,13 @@ class Request:
     # What was asked for.
 
     def has(self, name: str) -> bool:
-        """Return whether a parameter says anything, or an output is wanted."""
+        """Return whether a parameter says anything."""
         return self.parameters.get(name) not in (None, "")
+
+    def wants(self, name: str) -> bool:
+        """Return whether the algorithm has an output of this name, and it is wanted."""
+        definition = self.algorithm.parameterDefinition(name)
+        return definition is not None and definition.isDestination() and self.has(name)
 
     def text(self, name: str) -> str:
         """Return a text without blanks around it; "" where there is none."""

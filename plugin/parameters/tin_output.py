@@ -45,7 +45,7 @@ def write_surface(
     results = {}
     layers = tin_layers(surface.geo, surface.mesh, surface.vertex_ids)
     for name, layer in zip((tin, vertices), layers, strict=True):
-        if request.has(name):
+        if request.wants(name):
             results[name] = write_layer(request, name, surface.geo, layer)
     return results
 

@@ -248,6 +248,14 @@ class TestSimplify:
         assert not is_fine
         assert "one of three" in message
 
+    def test_the_number_of_vertices_is_no_output(self, run, dem, tmp_path, monkeypatch):
+        here = tmp_path / "here"
+        here.mkdir()
+        monkeypatch.chdir(here)
+        made = run("simplifydem", {"INPUT": dem, "VERTICES": 60, "TIN": "TEMPORARY_OUTPUT"})
+        assert "VERTICES" not in made
+        assert list(here.iterdir()) == []
+
     def test_without_a_rule_a_twentieth_of_the_cells_stays(self, run, dem):
         made = run("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT"})
         assert made["N_VERTICES"] == round(made["N_INPUT_VERTICES"] / 20)
