@@ -161,7 +161,7 @@ def meets_link_condition(a, ring, base, size, n_sides, origin, twin, outgoing):
 
 @inlined
 def is_among(u, ring, base, size):
-    for k in range(base, base + size):
+    for k in range(base, base + size):  # noqa: SIM110 (numba compiles no generators)
         if ring[k] == u:
             return True
     return False

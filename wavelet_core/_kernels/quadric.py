@@ -82,22 +82,18 @@ def evaluate(quadric, point):
     return total + quadric[slot]
 
 
-# How large the terms of that sum are, which bounds what rounding leaves of it
+# How large the terms were that the quadric was summed from: the trace counts its planes (each gives
+# d - 2), and points are normalised, so that their coordinates are at most about 1
 @njit
 def magnitude(quadric, point):
     d = point.shape[0]
     slot = 0
-    total = 0.0
+    trace, squared = 0.0, 0.0
     for i in range(d):
-        total += abs(quadric[slot]) * point[i] * point[i]
-        slot += 1
-        for j in range(i + 1, d):
-            total += 2.0 * abs(quadric[slot] * point[i] * point[j])
-            slot += 1
-    for i in range(d):
-        total += 2.0 * abs(quadric[slot] * point[i])
-        slot += 1
-    return total + abs(quadric[slot])
+        trace += quadric[slot]
+        squared += point[i] * point[i]
+        slot += d - i
+    return trace * (1.0 + squared)
 
 
 # Eq. 36; cost (n,) float64, filled: on a lattice of powers of two above what rounding leaves, so

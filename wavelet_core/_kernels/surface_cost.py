@@ -83,7 +83,7 @@ def place_ring(v, size, ring, x, y, z, ring_x, ring_y, ring_z):
 # Are all neighbours locked, so that none could take a share of the detail?
 @inlined
 def is_enclosed(size, ring, locked):
-    for k in range(size):
+    for k in range(size):  # noqa: SIM110 (numba compiles no generators)
         if not locked[ring[k]]:
             return False
     return True
@@ -140,7 +140,8 @@ def cover_on_edge(j, size, along):
 # those that the link condition forbids; measured: (n, c) of input
 @inlined
 def legal_targets(
-    v, size, rule, along, only, is_barred, ring, ring_x, ring_y, ring_z, diameter, measured, limits_tolerance,
+    v, size, rule, along, only, is_barred, ring, ring_x, ring_y, ring_z, diameter, measured,
+    limits_tolerance,
     height_step, order, own_error, distance, cover, cover_weights,
 ):  # fmt: skip
     n_legal = 0
@@ -262,7 +263,8 @@ def find_wedge(n_wedges, is_wide, fan_x, fan_y, x, y):
 # which is on the sum or on the largest.
 @inlined
 def fan_error(
-    j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y, by_sum, bound,
+    j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x,
+    slope_y, by_sum, bound,
     squared, largest,
 ):  # fmt: skip
     is_wide = lay_fan(j, size, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y)
@@ -301,7 +303,8 @@ def best_target(
             break
         if n_points > 0:
             total, largest, largest_z = fan_error(
-                j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y, by_sum,
+                j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y,
+                slope_x, slope_y, by_sum,
                 best, total, largest,
             )  # fmt: skip
         if not by_sum:
@@ -454,7 +457,8 @@ def collapse_costs(
                 if rule == STAYS:
                     continue
             n_legal = legal_targets(
-                v, size, rule, along, known if keeps_target else NONE, is_barred, ring, ring_x, ring_y, ring_z,
+                v, size, rule, along, known if keeps_target else NONE, is_barred, ring, ring_x,
+                ring_y, ring_z,
                 diameter, measured, tolerance, height_step, order, own_error, distance, cover,
                 cover_weights,
             )  # fmt: skip
@@ -464,7 +468,8 @@ def collapse_costs(
             bound = cutoff + before_it if by_sum else cutoff
             if n_points > 0 and (keeps_target or own_error[order[0]] < bound):
                 collect_points(
-                    v, size, n_sides, rule, spoke, x, y, ring_x, ring_y, first_point, n_points_of, x_of,
+                    v, size, n_sides, rule, spoke, x, y, ring_x, ring_y, first_point,
+                    n_points_of, x_of,
                     y_of, z_of, near_x, near_y, near_z,
                 )  # fmt: skip
             if keeps_target:
@@ -504,7 +509,8 @@ def collapse_costs(
             here = change - before_it
             if n_points > 0:
                 here = fan_error(
-                    j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y, True,
+                    j, size, n_points, near_x, near_y, near_z, ring_x, ring_y, ring_z, fan_x,
+                    fan_y, slope_x, slope_y, True,
                     cutoff, here, 0.0,
                 )[0]  # fmt: skip
             step = step_of(n_points + 1, before_it + abs(here), height_step) + MOMENT_STEP * terms

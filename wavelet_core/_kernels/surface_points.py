@@ -110,8 +110,8 @@ def lay_new_fan(v, base, size, ring, ring_faces, x, y, squared_tolerance, fan_xy
     return True, x[p] - x[a], y[p] - y[a], x[q] - x[a], y[q] - y[a], along
 
 
-# The wedge of the fan that holds the removed vertex, seen from the target at (x, y), and the weights
-# of the wedge's two outer corners
+# The wedge of the fan that holds the removed vertex, seen from the target at (x, y), and the
+# weights of the wedge's two outer corners
 @inlined
 def weights_in_fan(n_wedges, fan_xy, x, y):
     t = locate(n_wedges, fan_xy, x, y, 0)

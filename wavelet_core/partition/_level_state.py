@@ -61,13 +61,13 @@ class VertexState(NamedTuple):
 
     def packed(self, slots: NDArray[np.int64], position: NDArray[np.int32]) -> VertexState:
         """Return the state of some slots, side by side; ``position`` tells where slots went."""
-        packed = VertexState(*(array[slots] for array in self))
+        packed = VertexState._make(array[slots] for array in self)
         target = np.where(packed.target >= 0, position[packed.target], np.int32(-1))
         return packed._replace(target=target)
 
     def copied(self) -> VertexState:
         """Return a copy that shares no array."""
-        return VertexState(*(array.copy() for array in self))
+        return VertexState._make(array.copy() for array in self)
 
 
 class FaceState(NamedTuple):
@@ -99,11 +99,11 @@ class FaceState(NamedTuple):
 
     def packed(self, faces: NDArray[np.int64]) -> FaceState:
         """Return the state of some faces, side by side."""
-        return FaceState(*(array[faces] if len(array) else array for array in self))
+        return FaceState._make(array[faces] if len(array) else array for array in self)
 
     def copied(self) -> FaceState:
         """Return a copy that shares no array."""
-        return FaceState(*(array.copy() for array in self))
+        return FaceState._make(array.copy() for array in self)
 
 
 def _scattered(n_vertices: int) -> NDArray[np.uint32]:

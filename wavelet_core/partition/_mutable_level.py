@@ -38,7 +38,7 @@ from ._level_state import FaceState, VertexState
 from .outline import tolerant_outline
 
 #: The cheapest part of the vertices that a level may take, by which the cost of the others is
-#: limited: one sixteenth. PARTMEASURE
+#: limited: one sixteenth (not tuned; any small part would do).
 CHEAPEST_SHARE = 16
 #: Height errors below this part of the range of z never limit a cost: what single-precision input
 #: leaves of a plane is some 1e-8 of its range.
@@ -196,17 +196,25 @@ class SurfaceLevel:
         return slots[cost <= 0.0]
 
     def candidates(
-        self, fraction: float, cutoff: float, cost_ratio: float = np.inf
+        self,
+        fraction: float,
+        cutoff: float,
+        cost_ratio: float = np.inf,
+        besides_free: bool = False,
     ) -> NDArray[np.int32]:
         """Return the slots of the vertices that may be odd, the cheapest ones.
 
-        They are those that cost nothing and ``fraction`` of the others, at most. None of them
+        They are ``fraction`` of the vertices at most, or all that cost nothing if those are more;
+        with ``besides_free``, all that cost nothing and that share of the others. None of them
         costs more than ``cost_ratio`` times what the cheapest part of those
         (1 / CHEAPEST_SHARE) does, or than what a level before was allowed to take.
         """
         slots, cost = self._known(cutoff)
         n_free = int(np.count_nonzero(cost <= 0.0))
-        n_most = n_free + max(int(fraction * (self.n_vertices - n_free)), 1)
+        if besides_free:
+            n_most = n_free + max(int(fraction * (self.n_vertices - n_free)), 1)
+        else:
+            n_most = max(int(fraction * self.n_vertices), n_free, 1)
         n_cheapest = max(n_most // CHEAPEST_SHARE, 1)
         if len(slots) < n_cheapest:
             return slots
@@ -436,7 +444,7 @@ class SurfaceLevel:
         twin._faces = self._faces.copied()
         twin._outline = self._outline._replace(lives=self._outline.lives.copy())
         twin._mesh = HalfEdges(*(array.copy() for array in self._mesh))
-        twin._moments = Moments(*(array.copy() for array in self._moments))
+        twin._moments = Moments._make(array.copy() for array in self._moments)
         twin._surface = self._surface._replace(z=self._surface.z.copy())
         twin._points = self._points._replace(
             start=self._points.start.copy(), n_points=self._points.n_points.copy()

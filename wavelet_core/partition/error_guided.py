@@ -18,8 +18,8 @@ from ._mutable_level import CollapseStep, SurfaceLevel
 
 #: Norms by which a removal is judged.
 NORMS = ("rms", "max")
-#: Share of the vertices that a level may take, at most, besides those that cost nothing. Half of
-#: them is 1 to 6 % worse at the same size and takes 25 % less time.
+#: Share of the vertices that a level may take, at most, unless more cost nothing. Half of them is
+#: 1 to 6 % worse at the same size and takes 25 % less time.
 REMOVAL_FRACTION = 0.25
 #: Levels where neither their number nor a size or a tolerance is given. A level keeps some 85 % of
 #: the vertices that have relief, so about 2 % of them are left.
@@ -35,8 +35,9 @@ COST_RATIO = 8.0
 FAR = 2
 FAR_FACTOR = 2.0
 FAR_COST_RATIO = 64.0
-#: Costs beyond this multiple of the highest one of a level are not worked out for the next level:
-#: MARGINMEASURE
+#: Costs beyond this multiple of the highest one of a level are not worked out for the next level,
+#: which needs more choice where it takes its full share. Too small a margin only costs time: where
+#: few candidates are found below it, all costs are worked out.
 COST_MARGIN = 2.0
 FULL_SHARE_COST_MARGIN = 4.0
 #: With an update and a tolerance, how often a level is tried with half as many vertices.
@@ -209,12 +210,13 @@ def _candidates(
     level.rank(rules.norm, rules.max_error, cutoff)
     if rules.levels is None:
         free = level.free(cutoff)
-        if len(free) > fraction * (level.n_vertices - len(free)):
+        if len(free) > fraction * level.n_vertices:
             return free, True
-    slots = level.candidates(fraction, cutoff, cost_ratio)
+    besides_free = rules.levels is not None and not rules.limits_error
+    slots = level.candidates(fraction, cutoff, cost_ratio, besides_free)
     if cutoff < np.inf and len(slots) < LEAST_PROGRESS * level.n_vertices:
         level.rank(rules.norm, rules.max_error, np.inf)
-        slots = level.candidates(fraction, np.inf, cost_ratio)
+        slots = level.candidates(fraction, np.inf, cost_ratio, besides_free)
     return slots, False
 
 

@@ -17,6 +17,9 @@ from ._mutable_level import SurfaceLevel
 
 #: Share of the vertices whose bending energy is told apart; the rest count as the highest.
 ENERGY_QUANTILE = 0.99
+#: Bending energies are told apart in steps of this: the angles that they sum leave up to 1e-14 of a
+#: plane, and faces that meet at 1e-6 have that energy.
+ENERGY_STEP = 1e-12
 
 
 class LevelView(NamedTuple):
@@ -90,6 +93,7 @@ class QuadricPartition:
         self._quadrics = redistribute_quadrics(self._quadrics, split.odd, even, prediction)
 
     def _bending_coordinate(self, energy: FloatArray) -> FloatArray:
+        energy = np.rint(energy / ENERGY_STEP) * ENERGY_STEP
         if self._energy_scale is None:
             self._energy_scale = float(np.quantile(energy, ENERGY_QUANTILE))
         if self._energy_scale <= 0.0:

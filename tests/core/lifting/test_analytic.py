@@ -221,3 +221,13 @@ def test_flat_terrain_goes_before_a_ridge():
     is_ridge = np.abs(rows - 10) <= 1
     assert is_ridge.any()
     assert not is_ridge[: len(rows) - np.count_nonzero(np.abs(rows - 10) <= 2)].any()
+
+
+@pytest.mark.parametrize("slope", [(0.0, 0.0), (0.1, 0.2), (1 / 3, -0.7)])
+def test_the_papers_partition_takes_a_plane_in_order_of_index(slope):
+    """Eq. 36 came out at 2e-15 instead of 0, and rounding decided the order."""
+    x, y = np.meshgrid(np.arange(12.0), np.arange(9.0))
+    z = slope[0] * x + slope[1] * y + 512.3
+    mesh = TriangleMesh.from_grid(z, x=x[0], y=y[:, 0])
+    step = analyse(mesh, 1, partition="quadric", prediction="GL").steps[0]
+    assert (np.diff(step.odd) > 0).all()

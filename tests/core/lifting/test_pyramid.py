@@ -245,6 +245,7 @@ def test_levels_is_a_maximum_and_as_many_by_default_as_the_partition_wants():
     assert analyse(mesh).n_levels == 24
     assert analyse(mesh, prediction="GLMN").n_levels == 12  # the paper's experiments
     assert analyse(mesh, levels=500).n_levels < 500
+    assert analyse(synthetic.hills(40, 40), partition="quadric").n_levels == 12
 
 
 @pytest.mark.parametrize("signal", ["z", "xyz"])

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from helpers_meshes import grid_with_holes
 
 from wavelet_core import TriangleMesh, analyse, synthetic
+from wavelet_core._kernels.collapse import are_joined
+from wavelet_core._kernels.connectivity import BOUNDARY
+from wavelet_core._kernels.half_edges import MAX_RING, meets_link_condition, walk_ring
+from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.mesh.location import surface_errors
 from wavelet_core.partition._mutable_level import SurfaceLevel
 
@@ -94,3 +99,52 @@ def test_a_straight_outline_is_thinned_though_rotation_bends_it_by_rounding():
     assert coarse.n_vertices == 8
     assert (coarse.plan_areas > 0).all()
     assert coarse.plan_areas.sum() == pytest.approx(grid.plan_areas.sum(), rel=1e-9)
+
+
+def link_tests_of(mesh):
+    """Yield what the two link tests say of each edge of a vertex that may go."""
+    faces = mesh.faces.astype(np.int32)
+    indexed = build_connectivity(faces, mesh.n_vertices)
+    origin, twin, outgoing = level_of(mesh)._mesh
+    ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
+    none_made = np.full(mesh.n_vertices, -1, dtype=np.int32)
+    nothing = np.empty(1, np.int32)
+    for v in np.flatnonzero(indexed.kind <= BOUNDARY):
+        size, n_sides = walk_ring(v, origin, twin, outgoing, ring, spoke)
+        for j in range(size) if n_sides == size else (0, size - 1):
+            a = ring[j]
+            if indexed.kind[a] > BOUNDARY:
+                continue  # pinched: its half-edges are not one walk
+            apart = [
+                k
+                for k in range(size)
+                if 1 < (gap := abs(k - j)) and (gap < size - 1 or n_sides < size)
+            ]
+            joined = [
+                are_joined(
+                    a,
+                    ring[k],
+                    faces,
+                    indexed.star_indptr,
+                    indexed.star,
+                    none_made,
+                    nothing,
+                    nothing,
+                )
+                for k in apart
+            ]
+            met = meets_link_condition(a, ring, 0, size, n_sides, origin, twin, outgoing)
+            yield met, not any(joined)
+
+
+def test_link_conditions():
+    """The two link tests, on half-edges and on an indexed mesh, agree about every edge."""
+    n_refused = 0
+    for seed in range(12):
+        mesh = grid_with_holes(9, 10, seed=seed, hole_share=0.2)
+        pyramid = analyse(mesh, levels=30)
+        for _, level in pyramid.meshes():
+            for by_half_edges, by_faces in link_tests_of(level):
+                assert by_half_edges == by_faces
+                n_refused += not by_faces
+    assert n_refused > 0
