@@ -480,6 +480,15 @@ def test_an_outline_that_may_move_lets_a_level_be_coarser(run, tmp_path):
     assert moved["N_VERTICES"] == 12
 
 
+def test_what_is_noted_of_an_input_is_in_the_log(run, tmp_path):
+    values = hills(30, 40).astype("float32")
+    path = write_raster(tmp_path / "d.tif", values, None, 4326, (7.0, 44.0), 1 / 3600)
+    log = Log()
+    parameters = {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg"), "LEVELS": 1}
+    run("analysedem", parameters, feedback=log)
+    assert any("local metric frame" in line for line in log.lines)
+
+
 def test_an_error_names_parameters_as_the_dialog_does(provider):
     from wavelet_core import OptionError
 
