@@ -145,6 +145,16 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Gaps at the outline only</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Height of points at one place</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>Instead of the CRS in the file, or where it has none.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -155,7 +165,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Keep points of noise</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>Keep what is not transformed (GPS time, flags, ...) in the pyramid, so that the reconstructed file has it too.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Keep withheld points</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -166,6 +186,21 @@
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>LAS, LAZ or COPC file to a reversible pyramid of TINs with details by scale</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Let points of the classes 7 and 18 be part of the surface. Otherwise they are only carried, and the reconstructed file has them.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Longest edge</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -200,6 +235,16 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>The same for points with the withheld flag.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Triangles with a longer edge are left out, as gaps of the point cloud; in the unit of x and y, or metres for a geographic CRS. 0 for five times the spacing that 95 % of the points keep; empty to fill the convex hull.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>Triangulates the points of a LAS, LAZ or COPC file and turns them into a reversible wavelet pyramid. Attributes such as class, intensity, colour or height above ground are transformed together with the elevation. &lt;i&gt;Reconstruct&lt;/i&gt; gives the file back with exactly its integers.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -211,6 +256,11 @@
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Which height points have that share x and y; each of them comes back.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -495,6 +495,34 @@ class TestPointCloud:
         )
         assert back["EXACT"] == "yes"
 
+    def test_noise_duplicates_and_gaps(self, run, tmp_path):
+        pytest.importorskip("laspy")
+        xyz = survey(600)
+        xyz = xyz[np.abs(xyz[:, 0] - 700500) > 200]  # a gap of 400 m across
+        pit, above = xyz[:1] - np.array([-1, -1, 50]), xyz[1:2] + np.array([0, 0, 3])
+        path = write_las(
+            tmp_path / "points.las",
+            np.vstack([xyz, pit, above]),
+            classification=np.array([2] * len(xyz) + [7, 2]),
+        )
+
+        def analysed(name, **options):
+            output = str(tmp_path / f"{name}.gpkg")
+            made = run("analysepointcloud", {"INPUT": path, "OUTPUT": output, **options})
+            layer = {"INPUT": output, "LEVEL": made["N_LEVELS"], "VERTICES": "TEMPORARY_OUTPUT"}
+            heights = [f["elevation"] for f in run("extractlevel", layer)["VERTICES"].getFeatures()]
+            return made, np.array(heights)
+
+        plain, heights = analysed("plain")
+        assert plain["N_VERTICES"] == len(xyz)
+        assert heights.min() > 80
+        assert analysed("noise", KEEP_NOISE=True)[1].min() < 80
+        highest = analysed("highest", DUPLICATES="highest")[1]
+        assert highest.sum() == pytest.approx(heights.sum() + 3)
+        with_gap, _ = analysed("gap", MAX_EDGE=150)
+        assert with_gap["N_FACES"] < plain["N_FACES"]
+        assert analysed("auto", MAX_EDGE=0)[0]["N_FACES"] < plain["N_FACES"]
+
     def test_a_weight_of_what_is_not_analysed_is_refused(self, refused, cloud, tmp_path):
         parameters = {"INPUT": cloud, "OUTPUT": str(tmp_path / "p.gpkg")}
         weights = {"ATTRIBUTE_WEIGHTS": ["rgb", 0.5]}
