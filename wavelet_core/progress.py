@@ -39,3 +39,40 @@ def part_of(progress: Progress | None, start: float, stop: float) -> Progress | 
     if progress is None:
         return None
     return lambda fraction: progress(start * (1.0 - fraction) + stop * fraction)
+
+
+class Meter:
+    """Progress of work that is done in many small steps, each of which may be the last.
+
+    Parameters
+    ----------
+    progress : callable, optional
+    message : str
+        Of the error, if the work is to stop.
+    """
+
+    def __init__(self, progress: Progress | None, message: str) -> None:
+        self._progress, self._message = progress, message
+        self._start, self._stop, self._wanted, self._done = 0.0, 0.0, 1, 0
+
+    def begin(self, start: float, stop: float, n_steps: int) -> None:
+        """Begin a part of the work, of about so many steps, and tell so."""
+        self._start, self._stop = max(start, self._told), stop
+        self._wanted, self._done = max(n_steps, 1), 0
+        report(self._progress, self._told, self._message)
+
+    def tick(self) -> None:
+        """Tell that a step is done."""
+        self._done += 1
+        report(self._progress, self._told, self._message)
+
+    def part(self, fraction: float) -> bool:
+        """Take the place of ``progress`` in a step that tells its own fraction."""
+        span = (self._stop - self._start) / self._wanted
+        report(self._progress, min(self._told + fraction * span, self._stop), self._message)
+        return True
+
+    @property
+    def _told(self) -> float:
+        share = min(self._done / self._wanted, 1.0)
+        return self._start + share * (self._stop - self._start)

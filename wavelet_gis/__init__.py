@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
     from wavelet_gis.report.page import report_page
     from wavelet_gis.workflows.analyse import Analysis, analyse
-    from wavelet_gis.workflows.cluster import Labelled, classify, cluster
     from wavelet_gis.workflows.details import Details, details
     from wavelet_gis.workflows.extract import Surface, extract
     from wavelet_gis.workflows.filtering import Filtered
     from wavelet_gis.workflows.filtering import filter_pyramid as filter
-    from wavelet_gis.workflows.labels import labels_from_las, labels_from_layer
+    from wavelet_gis.workflows.learning.cluster import Labelled, classify, cluster
+    from wavelet_gis.workflows.learning.labels import labels_from_las, labels_from_layer
     from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.open import open_data as open
     from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
@@ -59,18 +59,18 @@ _HOMES = {
     "Analysis": "workflows.analyse:Analysis",
     "Details": "workflows.details:Details",
     "Filtered": "workflows.filtering:Filtered",
-    "Labelled": "workflows.cluster:Labelled",
+    "Labelled": "workflows.learning.cluster:Labelled",
     "Reconstruction": "workflows.reconstruct:Reconstruction",
     "Simplified": "workflows.simplify:Simplified",
     "Surface": "workflows.extract:Surface",
     "analyse": "workflows.analyse:analyse",
-    "classify": "workflows.cluster:classify",
-    "cluster": "workflows.cluster:cluster",
+    "classify": "workflows.learning.cluster:classify",
+    "cluster": "workflows.learning.cluster:cluster",
     "details": "workflows.details:details",
     "extract": "workflows.extract:extract",
     "filter": "workflows.filtering:filter_pyramid",
-    "labels_from_las": "workflows.labels:labels_from_las",
-    "labels_from_layer": "workflows.labels:labels_from_layer",
+    "labels_from_las": "workflows.learning.labels:labels_from_las",
+    "labels_from_layer": "workflows.learning.labels:labels_from_layer",
     "load": "workflows.open:load",
     "open": "workflows.open:open_data",
     "reconstruct": "workflows.reconstruct:reconstruct",

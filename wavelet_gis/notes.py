@@ -14,11 +14,12 @@ Examples
 
 from __future__ import annotations
 
+import os
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from wavelet_gis.errors import TerrainWarning
@@ -146,6 +147,15 @@ def warn(
 
 
 def _keep(entry: Note) -> None:
+    """Keep a note where somebody collects them, files by their names alone.
+
+    Notes go into pyramid files, which must not tell folders and must be the same wherever they are
+    made.
+    """
     notes = _current.get()
-    if notes is not None:
-        notes.append(entry)
+    if notes is None:
+        return
+    name = entry.figures.get("name")
+    if isinstance(name, str):
+        entry = replace(entry, figures={**entry.figures, "name": os.path.basename(name)})
+    notes.append(entry)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wavelet_gis.model.geo_pyramid import GeoPyramid
-    from wavelet_gis.workflows.cluster import Labelled
+    from wavelet_gis.workflows.learning.cluster import Labelled
 
 METHODS = ("kmeans", "mixture")
 TEACHERS = ("nobody: find clusters", "training areas", "classes of the LAS file")
@@ -149,7 +149,7 @@ class ClusterDetails(PyramidAlgorithm):
             advanced=True,
         )
         self.add(
-            QgsProcessingParameterBoolean("VALIDATE", tr("Report the accuracy"), False),
+            QgsProcessingParameterBoolean("VALIDATE", tr("Report the accuracy"), True),
             tr(
                 "Predict blocks of the map from the others, and tell how many of their labels come "
                 "out right. Takes several times as long."
@@ -232,7 +232,6 @@ class ClusterDetails(PyramidAlgorithm):
         results: Values = {"N_CLUSTERS": len(summary["clusters"])}
         if labelled.validation is not None:
             results["ACCURACY"] = labelled.validation.accuracy
-            request.say(tr("Accuracy: {:.1f} %").format(100 * labelled.validation.accuracy))
         results.update(_written(request, labelled))
         path = request.output_file("SUMMARY")
         if path:
@@ -244,7 +243,7 @@ class ClusterDetails(PyramidAlgorithm):
         return results
 
     def _clusters(self, request: Request, geo: GeoPyramid) -> Labelled:
-        from wavelet_gis.workflows.cluster import cluster
+        from wavelet_gis.workflows.learning.cluster import cluster
 
         request.stage(tr("Gathering the spectrum of each vertex, and clustering"))
         return cluster(
@@ -257,13 +256,15 @@ class ClusterDetails(PyramidAlgorithm):
         )
 
     def _classes(self, request: Request, geo: GeoPyramid) -> Labelled:
-        from wavelet_gis.workflows.cluster import classify
+        from wavelet_gis.workflows.learning.cluster import classify
 
         given = self._given(request, geo)
         request.stage(tr("Gathering the spectrum of each vertex, and learning the classes"))
         return classify(
             geo,
             given,
+            is_las=_teacher(request) == TEACHERS[2],
+            unlabelled=request.whole_numbers("UNLABELLED"),
             validate=request.flag("VALIDATE"),
             seed=request.whole("SEED") or 0,
             progress=request.progress(0.05, 0.8),
@@ -272,7 +273,7 @@ class ClusterDetails(PyramidAlgorithm):
     def _given(self, request: Request, geo: GeoPyramid) -> NDArray[np.int64]:
         """Return the classes that are known, below 0 where they are not."""
         if _teacher(request) == TEACHERS[2]:
-            from wavelet_gis.workflows.labels import labels_from_las
+            from wavelet_gis.workflows.learning.labels import labels_from_las
 
             return labels_from_las(geo, request.whole_numbers("UNLABELLED"))
         from ..qgis_io.training import labels_inside

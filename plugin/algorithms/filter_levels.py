@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from qgis.core import (
     QgsProcessingOutputNumber,
@@ -107,7 +107,7 @@ class FilterLevels(PyramidAlgorithm):
     def _add_noise_parameters(self) -> None:
         self.add(
             QgsProcessingParameterBoolean("DENOISE", tr("Remove noise"), False),
-            tr("White noise, such as that of a laser scanner."),
+            tr("Such as that of a laser scanner."),
         )
         self.add(
             QgsProcessingParameterNumber(
@@ -122,11 +122,44 @@ class FilterLevels(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterNumber(
+                "NOISE_RANGE",
+                tr("Range of the noise"),
+                REAL_NUMBER,
+                None,
+                optional=True,
+                minValue=0.0,
+            ),
+            tr(
+                "Distance at which the correlation of the noise has fallen to a third, in metres; "
+                "empty for noise that is white."
+            ),
+            advanced=True,
+        )
+        for name, description, text in (
+            (
+                "FIND_RANGE",
+                tr("Estimate the range of the noise"),
+                tr("From how details fall off over the scales."),
+            ),
+            (
+                "LOCAL_NOISE",
+                tr("Noise differs by place"),
+                tr("Measure the noise at each place, as on slopes seen by a laser scanner."),
+            ),
+            (
+                "OUTLIERS",
+                tr("Replace outliers"),
+                tr("Values that stand out of their ring are replaced before all else."),
+            ),
+        ):
+            self.add(QgsProcessingParameterBoolean(name, description, False), text, advanced=True)
+        self.add(
+            QgsProcessingParameterNumber(
                 "PYRAMIDS", tr("Number of pyramids averaged"), WHOLE_NUMBER, 8, minValue=0
             ),
             tr(
                 "Pyramids in random order, each denoised, whose average leaves no traces of "
-                "triangles. 0 thresholds the details of this pyramid alone, which is quick."
+                "triangles. 0 thresholds the details of a single one, which is quick."
             ),
             advanced=True,
         )
@@ -236,6 +269,9 @@ class FilterLevels(PyramidAlgorithm):
             denoise=request.flag("DENOISE") and (True if sigma is None else sigma),
             n_pyramids=request.whole("PYRAMIDS") or 0,
             channels=request.words("CHANNELS") or ["z"],
+            noise_range=_range(request),
+            local_noise=request.flag("LOCAL_NOISE"),
+            outliers=request.flag("OUTLIERS"),
             progress=request.progress(0.05, 0.7),
         )
         for line in filtered.changes:
@@ -282,6 +318,11 @@ def _figures(filtered: Filtered) -> Values:
 
 def _gains(request: Request) -> list[tuple[int, float]]:
     return [(int(level), float(gain)) for level, gain in request.pairs("GAINS")]
+
+
+def _range(request: Request) -> float | Literal["estimate"]:
+    """Return the range of the noise in metres, or that it is to be estimated; 0 for white noise."""
+    return "estimate" if request.flag("FIND_RANGE") else request.number("NOISE_RANGE") or 0.0
 
 
 def _levels(request: Request, geo: GeoPyramid) -> tuple[int, int] | None:

@@ -140,7 +140,7 @@ def test_clusters_as_points_and_raster_agree(run):
 def test_classes_are_learned_from_las_and_written_back(run, folder):
     options = ["--learn", "las", "--unlabelled", "1", "--validate"]
     code, path, figures = run("cluster", "c.gpkg", "new.laz", *options)
-    assert code == 0
+    assert code == 0, figures
     assert figures["validation"]["classes"] == [2, 5]
     assert figures["validation"]["accuracy"] > 0.8
     before, after = laspy.read(folder / "cloud.laz"), laspy.read(path)
@@ -234,3 +234,99 @@ def test_real_data_go_through_all_three(source, levels, data_folder, tmp_path, c
     ):
         assert main([command, str(pyramid), str(tmp_path / output), "--quiet"]) == 0, output
         assert (tmp_path / output).stat().st_size > 1000
+
+
+def labelled_cloud(path, *, tree_share=0.4, copy=False):
+    """Write slopes with trees, west of x = 60 m classified, two points at each of ten places."""
+    rng = np.random.default_rng(5)
+    n = 2400
+    x, y = rng.uniform(0, 100, (2, n))
+    is_tree = rng.random(n) < tree_share
+    z = 0.1 * x + 0.05 * rng.normal(size=n) + np.where(is_tree, rng.uniform(2, 20, n), 0.0)
+    truth = np.where(is_tree, 5, 2)
+    label = np.where(x < 60, truth, 1)
+    x[:10], y[:10] = x[10:20], y[10:20]
+    x[:20] -= x[:20] * 0.5  # in the labelled part
+    z[:10], z[10:20] = 30.0, 0.0
+    truth[:10], truth[10:20] = 5, 2
+    label[:10], label[10:20] = 5, 2
+    las = laspy.LasData(laspy.LasHeader(version="1.4", point_format=6))
+    las.header.scales, las.header.offsets = [0.001] * 3, [0.0] * 3
+    if copy:
+        las.add_extra_dim(laspy.ExtraBytesParams("survey", "u1"))
+        las.survey = np.where(label == 1, 9, label + 40)
+    las.x, las.y, las.z, las.classification = x, y, z, label
+    las.intensity = rng.integers(0, 999, n)
+    las.write(path)
+    return truth, label
+
+
+@pytest.mark.parametrize(
+    "attributes",
+    [
+        ["--attributes", "classification,intensity"],
+        ["--attributes", "classification,hag", "--class-channels"],
+        ["--attributes", "survey,intensity"],
+        ["--attributes", "hag", "--partition", "quadric", "--prediction", "nnls"],
+    ],
+    ids=["class", "channels and height above ground", "copy", "partition by the answer"],
+)
+def test_a_label_is_not_learned_from_itself(tmp_path, capsys, attributes):
+    # With the class among the features accuracy was 100 %, and every unlabelled point ground.
+    truth, label = labelled_cloud(tmp_path / "a.las", copy="survey" in attributes[1])
+    options = [] if "--partition" in attributes else SPECTRAL
+    files = [str(tmp_path / name) for name in ("a.las", "p.gpkg", "b.las")]
+    analysed = ["analyse", *files[:2], "--levels", "6", "--crs", "EPSG:32632", "--quiet"]
+    assert main([*analysed, *attributes, *options]) == 0
+    capsys.readouterr()
+    assert main(["cluster", *files[1:], "--learn", "las"]) == 0
+    said = capsys.readouterr().out
+    assert "not learned from" in said
+    assert "accuracy in blocks of the map left out" in said
+    assert "class 5: F1" in said
+    done = np.array(laspy.read(files[2]).classification)
+    is_given = label != 1
+    np.testing.assert_array_equal(done[is_given], label[is_given])
+    assert set(done) == {2, 5}
+    of_trees = (truth == 5) & ~is_given
+    assert np.mean(done[of_trees] == 5) > 0.7
+    assert np.mean(done[~is_given] == truth[~is_given]) > 0.75
+
+
+def test_points_that_have_a_class_keep_it_where_they_share_a_place(tmp_path, capsys):
+    labelled_cloud(tmp_path / "a.las")
+    files = [str(tmp_path / name) for name in ("a.las", "p.gpkg", "b.las")]
+    assert main(["analyse", *files[:2], "--levels", "5", "--crs", "EPSG:32632", *SPECTRAL]) == 0
+    options = ["--learn", "las", "--no-validate"]
+    capsys.readouterr()
+    assert main(["cluster", *files[1:], *options, "--json"]) == 0
+    assert "validation" not in json.loads(capsys.readouterr().out)
+    before, after = (np.array(laspy.read(files[k]).classification) for k in (0, 2))
+    np.testing.assert_array_equal(before[:20], after[:20])
+    assert set(after[:10]) == {5}
+    merged = ["--merge", "5=6", "--overwrite", "--quiet"]
+    assert main(["cluster", *files[1:], *options, *merged]) == 0
+    after = np.array(laspy.read(files[2]).classification)
+    assert set(after[:10]) == {6}
+    assert set(after) == {2, 6}
+
+
+def test_labels_in_one_place_are_said_not_to_be_checked(run, tmp_path):
+    boxes = [
+        shapely.box(500000, 5099990, 500010, 5100000),
+        shapely.box(500010.1, 5099990, 500020, 5100000),
+    ]
+    pyogrio.raw.write(
+        tmp_path / "corner.gpkg",
+        np.array([shapely.to_wkb(box) for box in boxes], dtype=object),
+        [np.array([1, 2])],
+        ["class"],
+        geometry_type="Polygon",
+        crs="EPSG:32632",
+        driver="GPKG",
+    )
+    code, _, figures = run("cluster", "d.gpkg", "c.tif", "--learn", str(tmp_path / "corner.gpkg"))
+    assert code == 0
+    assert "validation" not in figures
+    assert figures["notes"][0]["code"] == "not_validated"
+    assert "not checked on blocks left out" in figures["notes"][0]["text"]

@@ -11,6 +11,7 @@ import rasterio
 from gis.samples import hills, write_tif
 
 from wavelet_core.lifting.spacings import level_spacings
+from wavelet_gis.cli.main import main
 from wavelet_gis.io.pyramid_file import read_pyramid
 
 
@@ -159,3 +160,20 @@ def test_the_examples_of_the_docs_run(done, noisy, tmp_path, monkeypatch, capsys
             done(*arguments)
     assert "furrows" in (out := capsys.readouterr().out)
     assert "noise" in out
+
+
+def test_noise_by_place_with_a_range_and_outliers_is_told(tmp_path, capsys):
+    noisy = hills() + np.random.default_rng(0).normal(0, 0.2, hills().shape)
+    noisy[20, 20] += 60
+    write_tif(tmp_path / "a.tif", noisy.astype("f4"))
+    pyramid, out = str(tmp_path / "p.gpkg"), str(tmp_path / "b.tif")
+    assert main(["analyse", str(tmp_path / "a.tif"), pyramid, "--levels", "4", "--quiet"]) == 0
+    capsys.readouterr()
+    options = ["--outliers", "--local-noise", "--noise-range", "auto", "--pyramids", "1"]
+    assert main(["filter", pyramid, out, "--denoise", *options]) == 0
+    assert "1 outlier replaced" in capsys.readouterr().out
+    assert main(["filter", pyramid, out, "--gain", "1=0", "--outliers", "--overwrite"]) == 1
+    assert "give --denoise too" in capsys.readouterr().err
+    thresholds = ["--denoise", "--pyramids", "0", "--noise-range", "30", "--overwrite"]
+    assert main(["filter", pyramid, out, *thresholds]) == 1
+    assert "thresholds know white noise only" in capsys.readouterr().err

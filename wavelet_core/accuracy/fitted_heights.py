@@ -12,7 +12,7 @@ from ..mesh.location import Cover, cover_of
 from ..mesh.triangle_mesh import TriangleMesh
 
 #: The fit ends when the gradient has fallen to this part of what it was.
-TOLERANCE = 1e-6
+TOLERANCE = 1e-7
 #: Or after so many steps; real terrain takes about 40.
 MAX_STEPS = 500
 

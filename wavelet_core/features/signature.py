@@ -100,8 +100,10 @@ def energy_signature(
     bands = joined_levels(pyramid)
     names: list[str] = []
     blocks: list[NDArray[np.float32]] = []
-    for channel in channels or (None,):
-        blocks.append(_log_energies(pyramid, channel, bands, progress))
+    wanted: Sequence[str | None] = tuple(channels) or (None,)
+    for k, channel in enumerate(wanted):
+        part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
+        blocks.append(_log_energies(pyramid, channel, bands, part))
         names += [f"rms {channel or 'geometry'} {first}-{stop - 1}" for first, stop in bands]
     return Signature(tuple(names), frozen(np.hstack(blocks)))
 
@@ -133,12 +135,16 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     _require_levels(pyramid)
     bands = joined_levels(pyramid)
     labels = [f"{first}-{stop - 1}" for first, stop in bands]
-    n_parts = 1 + len(pyramid.attribute_names)
-    components = band_components(pyramid, "z", part_of(progress, 0, 1 / n_parts))
+    share = 1.0 / (3 + 2 * len(pyramid.attribute_names))  # of one walk through the levels
+    components = band_components(pyramid, "z", part_of(progress, 0.0, share))
     blocks: list[NDArray] = [
         np.column_stack([components.residual(first) for first, _ in bands]),
-        heights_above_lows(pyramid, [first for first, _ in bands]),
-        _log_energies(pyramid, None, bands, None),
+        heights_above_lows(
+            pyramid,
+            [first for first, _ in bands],
+            progress=part_of(progress, share, 2 * share),
+        ),
+        _log_energies(pyramid, None, bands, part_of(progress, 2 * share, 3 * share)),
     ]
     names = [f"height above {first}" for first, _ in bands]
     names += [f"height above lows of {first}" for first, _ in bands]
@@ -147,12 +153,12 @@ def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signat
     column = pyramid.channels.index("z")
     blocks += [np.nan_to_num(details.vectors[:, [column]]), details.level[:, None]]
     names += ["own detail", "level"]
-    for k, attribute in enumerate(pyramid.attribute_names, start=1):
-        components = band_components(
-            pyramid, attribute, part_of(progress, k / n_parts, (k + 1) / n_parts)
-        )
+    for k, attribute in enumerate(pyramid.attribute_names):
+        begin = (3 + 2 * k) * share
+        components = band_components(pyramid, attribute, part_of(progress, begin, begin + share))
         smooth = [components.base + components.bands[:, :first].sum(axis=1) for first, _ in bands]
-        blocks += [np.column_stack(smooth), _log_energies(pyramid, attribute, bands, None)]
+        part = part_of(progress, begin + share, begin + 2 * share)
+        blocks += [np.column_stack(smooth), _log_energies(pyramid, attribute, bands, part)]
         names += [f"{attribute} at {first}" for first, _ in bands]
         names += [f"rms {attribute} {label}" for label in labels]
     return Signature(

@@ -6,20 +6,22 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import block_diag
-from scipy.optimize import lsq_linear
+from numpy.typing import NDArray
 
 from .._validate import FloatArray
 from ..lifting.linear_map import LinearStep, Transform
+from ._bounded import least_within, moments_of
 from .noise import local_energy
+from .noise_model import Noise
 from .undecimated import UndecimatedBank
 
 
 class Damping(NamedTuple):
-    """Local energies, in units of the noise, that tell details of terrain from those of noise.
+    r"""Local energies, in units of the noise, that tell details of terrain from those of noise.
 
-    Details enter as they are and damped at each of ``scales``. ``probed`` are as many energies
-    at which the change of the details is bounded: none, noise and a half, all.
+    A detail may be changed by a function of its local energy, a weighted sum of 1 and of
+    :math:`\exp(-(E / T)^2)` with T each of ``scales``. Such a function is told by its values at
+    as many energies ``probed``: none, noise and a half, all.
     """
 
     scales: tuple[float, ...]
@@ -29,12 +31,20 @@ class Damping(NamedTuple):
     def n_elements(self) -> int:
         return 1 + len(self.scales)
 
-    def damped(self, details: FloatArray, energy: FloatArray) -> FloatArray:
-        """Return ``(..., n_elements)``: details as they are, and those where energy is small."""
-        damped = [details * np.exp(-((energy / scale) ** 2)) for scale in self.scales]
-        return np.stack([details, *damped], axis=-1)
+    def parts(self, details: FloatArray, energy: FloatArray) -> FloatArray:
+        """Return ``(..., n_elements)``: details times the function that is 1 at one probed energy.
 
-    def weights_of_changes(self) -> FloatArray:
+        They add up to the details. Where all energies are alike, as on a plane, the functions of
+        the others are zero to rounding, which a sum of 1 and exponentials would leave to the
+        solver as columns that are the same but for their last digits.
+        """
+        damping = [np.ones(energy.shape)]
+        with np.errstate(over="ignore"):  # the energy of a rock in units of a noise of nothing
+            damping += [np.exp(-((energy / scale) ** 2)) for scale in self.scales]
+        weights = self._weights_of_changes()
+        return details[..., None] * np.einsum("...d,de->...e", np.stack(damping, axis=-1), weights)
+
+    def _weights_of_changes(self) -> FloatArray:
         """Return the weights of the elements for a change of 1 at each probed energy alone."""
         ratio = np.divide.outer(np.asarray(self.probed), np.asarray(self.scales))
         return np.linalg.inv(np.column_stack([np.ones(len(ratio)), np.exp(-(ratio**2))]))
@@ -61,6 +71,8 @@ PROBED_BY_PYRAMIDS, PROBED_BY_VERTICES = 100_000, 600_000
 MOST_PROBES = 8
 #: Ridge of the weights, relative to the mean energy of a column: it pulls towards no change.
 RIDGE = 1e-7
+#: Columns smaller than this part of the values are rounding.
+ROUNDING = 1e-13
 
 
 class WeightedSum:
@@ -69,9 +81,10 @@ class WeightedSum:
     Parameters
     ----------
     values : ndarray, shape (n_vertices,)
-    sigma : float
-        Standard deviation of the noise, above 0.
+    noise : Noise
+        Its standard deviation above what rounding leaves of the values.
     bank : UndecimatedBank
+        Measured with noise of this kind.
     n_pyramids, levels : int
         How many pyramids will be taken in, and the most levels that they have.
     seed : int
@@ -80,7 +93,7 @@ class WeightedSum:
     def __init__(
         self,
         values: FloatArray,
-        sigma: float,
+        noise: Noise,
         bank: UndecimatedBank,
         n_pyramids: int,
         levels: int,
@@ -89,7 +102,9 @@ class WeightedSum:
         generator = np.random.default_rng(seed)
         n = len(values)
         self._values = values - values.mean()
-        self._sigma = sigma
+        # Noise above the whole relief smooths it all; what is more would only cost digits.
+        self._sigma = min(noise.sigma, float(np.ptp(values)))
+        self.noise = noise
         self._generator = generator
         self._bank, self._share = bank, 1.0 / n_pyramids
         self._rows = (
@@ -98,11 +113,7 @@ class WeightedSum:
         n_bands = -(-levels // LEVELS_PER_BAND)
         n_parts = self._bank.n_scales * self._bank.n_parts
         self._first_of_vertices = n_bands * OF_PYRAMIDS.n_elements
-        self._to_weights = block_diag(
-            *[OF_PYRAMIDS.weights_of_changes()] * n_bands,
-            *[OF_VERTICES.weights_of_changes()] * n_parts,
-        )
-        n_columns = len(self._to_weights)
+        n_columns = self._first_of_vertices + n_parts * OF_VERTICES.n_elements
         self._columns = np.zeros((min(n, MAX_FITTED), n_columns))
         self._divergence = np.zeros(n_columns)
         self._weights = np.zeros(n_columns)
@@ -113,11 +124,10 @@ class WeightedSum:
         """Whether the pyramids have any weight."""
         return bool(self._weights[: self._first_of_vertices].any())
 
-    def fit_vertices(self, tick: Callable[[], None]) -> None:
-        """Take in the details of all vertices, and their divergence; ``tick`` may cancel."""
+    def fit_vertices(self) -> None:
+        """Take in the details of all vertices, and their divergence."""
         shifted, probes = self._shifted(PROBED_BY_VERTICES)
         for where, damped in self._damped_by_vertices(shifted):
-            tick()
             self._take_in(where, damped, probes, 1.0)
 
     def fit(self, transform: Transform, gains: list[FloatArray]) -> None:
@@ -125,7 +135,7 @@ class WeightedSum:
         shifted, probes = self._shifted(PROBED_BY_PYRAMIDS)
         details = transform.analyse(shifted)[1]
         damped = [
-            _damped(step, detail, self._sigma * gain)
+            _damped(step, detail, self._sigma * gain, transform.tick)
             for step, detail, gain in zip(transform.steps, details, gains, strict=True)
         ]
         for first in range(0, len(damped), LEVELS_PER_BAND):  # counted from the finest
@@ -139,44 +149,68 @@ class WeightedSum:
     def solve(self, finish: bool) -> None:
         """Find the weights; with ``finish`` the fitted columns cover all vertices: sum them.
 
-        Details are multiplied by 1 + b_0 + b_1 exp(...) + ..., a function of their local energy.
-        Its values at as many energies are the unknowns here, so that they can be kept between
-        dropping and boosting: a sigma that is far too large would otherwise turn details over.
-        Pyramids and vertices both hold all details, so they share the bounds.
+        Details are multiplied by 1 + a function of their local energy. Its values at the probed
+        energies are the unknowns here, so that they can be kept between dropping and boosting: a
+        sigma that is far too large would otherwise turn details over. Pyramids and vertices both
+        hold all details, so they share the bounds. Columns of nothing but rounding, those of a
+        plane or of energies that no detail has, take no part.
         """
         share = len(self._columns) / len(self._values)
-        moments = self._to_weights.T @ (self._columns.T @ self._columns) @ self._to_weights
-        pull = -(self._sigma**2) * share * (self._to_weights.T @ self._divergence)
-        size = np.sqrt(np.where(np.diag(moments) > 0, np.diag(moments), 1.0))
-        root = np.linalg.cholesky(moments / np.outer(size, size) + RIDGE * np.eye(len(size)))
-        target = np.linalg.solve(root, pull / size)
-        is_of_pyramids = np.arange(len(size)) < self._first_of_vertices
-        least = np.inf
+        moments = moments_of(self._columns)
+        pull = -(self._sigma**2) * share * self._divergence
+        size = np.sqrt(np.diag(moments))
+        floor = ROUNDING * max(float(np.sqrt(np.sum(self._values**2))), ROUNDING * size.max())
+        holds = size > floor
+        self._weights = np.zeros(len(size))
+        if holds.any():
+            self._weights[holds] = self._changes(
+                moments[np.ix_(holds, holds)],
+                pull[holds],
+                size[holds],
+                np.flatnonzero(holds) < self._first_of_vertices,
+            )
+        if finish:
+            self.result += np.einsum("vk,k->v", self._columns, self._weights)
+
+    def _changes(
+        self,
+        moments: FloatArray,
+        pull: FloatArray,
+        size: FloatArray,
+        is_of_pyramids: NDArray[np.bool_],
+    ) -> FloatArray:
+        """Return the least of ``b' M b / 2 - pull b`` within the bounds."""
+        scaled = moments / (size[:, None] * size) + RIDGE * np.eye(len(size))
+        least, changes = np.inf, np.zeros(len(size))
         for share_of_pyramids in SHARES_OF_PYRAMIDS:
             room = np.where(is_of_pyramids, share_of_pyramids, 1.0 - share_of_pyramids) * size
             is_open = room > 0
-            bounds = (LEAST_CHANGE * room[is_open], MOST_CHANGE * room[is_open])
-            found = lsq_linear(root.T[:, is_open], target, bounds, method="bvls")
-            if found.cost < least:
-                least, changes = found.cost, np.zeros(len(size))
-                changes[is_open] = found.x
-        self._weights = self._to_weights @ (changes / size)
-        if finish:
-            self.result += self._columns @ self._weights
+            if not is_open.any():
+                continue
+            found, cost = least_within(
+                scaled[np.ix_(is_open, is_open)],
+                (pull / size)[is_open],
+                LEAST_CHANGE * room[is_open],
+                MOST_CHANGE * room[is_open],
+            )
+            if cost < least:
+                least, changes = cost, np.zeros(len(size))
+                changes[is_open] = found
+        return changes / size
 
-    def add_vertices(self, tick: Callable[[], None]) -> None:
-        """Add the weighted details of all vertices to the result; ``tick`` may cancel."""
+    def add_vertices(self) -> None:
+        """Add the weighted details of all vertices to the result."""
         for where, damped in self._damped_by_vertices(self._values[:, None]):
-            tick()
-            self.result += damped[:, 0] @ self._weights[where]
+            self.result += np.einsum("vk,k->v", damped[:, 0], self._weights[where])
 
     def add(self, transform: Transform, gains: list[FloatArray]) -> None:
         """Add the weighted details of one pyramid to the result."""
         details = transform.analyse(self._values[:, None])[1]
         sums = {}
         for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
-            damped = _damped(step, details[level], self._sigma * gain)[:, 0]
-            sums[level] = damped @ self._weights[_block(len(gains) - 1 - level)][:, None]
+            damped = _damped(step, details[level], self._sigma * gain, transform.tick)[:, 0]
+            weights = self._weights[_block(len(gains) - 1 - level)]
+            sums[level] = np.einsum("vk,k->v", damped, weights)[:, None]
         if sums:
             self.result += self._share * transform.synthesise_bands(sums)[:, 0]
 
@@ -184,7 +218,7 @@ class WeightedSum:
         """Return the column and itself moved a little along random probes, and the probes."""
         n = len(self._values)
         shape = (n, max(1, min(MOST_PROBES, n_wanted // n)))
-        probes = self._generator.choice([-1.0, 1.0], size=shape)
+        probes = self.noise.probes(self._generator, shape)
         moved = self._values[:, None] + PROBE_STEP * self._sigma * probes
         return np.column_stack([self._values, moved]), probes
 
@@ -204,14 +238,16 @@ class WeightedSum:
                 noise = self._sigma * self._bank.noise[scale][:, part]
                 energy = self._bank.local_energy((one / noise[:, None]) ** 2, VERTEX_ROUNDS + scale)
                 end = first + OF_VERTICES.n_elements
-                yield slice(first, end), OF_VERTICES.damped(one, energy)
+                yield slice(first, end), OF_VERTICES.parts(one, energy)
                 first = end
 
 
-def _damped(step: LinearStep, details: FloatArray, noise: FloatArray) -> FloatArray:
-    """Return ``(n_odd, k, n_elements)``: each column as it is, and damped where it is strong."""
-    energy = local_energy(step, (details / noise[:, None]) ** 2, PYRAMID_ROUNDS)
-    return OF_PYRAMIDS.damped(details, energy)
+def _damped(
+    step: LinearStep, details: FloatArray, noise: FloatArray, tick: Callable[[], None]
+) -> FloatArray:
+    """Return ``(n_odd, k, n_elements)``: each column in parts by its local energy."""
+    energy = local_energy(step, (details / noise[:, None]) ** 2, PYRAMID_ROUNDS, tick)
+    return OF_PYRAMIDS.parts(details, energy)
 
 
 def _block(levels_above: int) -> slice:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,12 +11,14 @@ from .._validate import FloatArray
 from ..errors import OptionError
 from ..lifting.analyse import EXPECTED_KEPT, analyse
 from ..lifting.linear_map import Transform
+from ..lifting.pyramid import Pyramid
 from ..mesh.triangle_mesh import TriangleMesh
-from ..progress import Progress, report
+from ..progress import Meter, Progress, report
 from . import _weighted_sum
-from ._weighted_sum import WeightedSum
+from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
-from .noise import check_sigma, estimate_noise, noise_columns, noise_gains
+from .noise import check_sigma, noise_columns, noise_gains
+from .noise_model import Noise, RangeOption, noise_of
 from .undecimated import UndecimatedBank
 
 #: Scales of the details of all vertices for a level of a pyramid: they reach as far.
@@ -39,6 +40,10 @@ def denoise(
     locked: ArrayLike | None = None,
     seed: int = 0,
     progress: Progress | None = None,
+    noise_range: RangeOption = 0.0,
+    local_noise: bool = False,
+    outliers: bool = False,
+    found: dict[str, Noise] | None = None,
 ) -> TriangleMesh:
     r"""Return the mesh with the noise taken out of its elevations or attributes.
 
@@ -64,6 +69,17 @@ def denoise(
         The same seed gives the same result.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
+    noise_range : float or "estimate"
+        Distance at which the correlation of the noise has fallen to 1/e, in the unit of x and y;
+        0 for white noise. An estimate takes relief that is as fine as the mesh for noise.
+    local_noise : bool
+        Whether the noise differs by place, as on slopes that a laser scanner saw; it is then
+        measured there, and ``sigma`` is its median.
+    outliers : bool
+        Replace values that stand out of their ring before all else.
+    found : dict, optional
+        Is given the :class:`~wavelet_core.filtering.noise_model.Noise` of each channel: what was
+        estimated, and the outliers.
 
     Returns
     -------
@@ -72,7 +88,7 @@ def denoise(
     Raises
     ------
     OptionError
-        An unknown channel, a negative sigma, no pyramid.
+        An unknown channel, a negative sigma or range, no pyramid.
     Cancelled
         ``progress`` returned False.
 
@@ -89,8 +105,10 @@ def denoise(
     is least: :math:`M b = -\sigma^2 \operatorname{div} F` with :math:`M = F^T F`, within bounds
     that neither turn a detail over nor boost it by more than a half, to be shared by the two ways.
     No clean surface and no threshold is needed, and noise of zero gives back the input. The
-    estimate holds for white normal noise; M is taken from the average of all pyramids, which is
-    what makes the weights fit the average rather than a single one.
+    estimate holds for normal noise: with a covariance C that is not white, :math:`\sigma^2
+    \operatorname{div} F` gives way to :math:`\operatorname{tr}(C\, \partial F)`, probed by columns
+    of such noise. M is taken from the average of all pyramids, which is what makes the weights fit
+    the average rather than a single one.
 
     References
     ----------
@@ -117,29 +135,46 @@ def denoise(
     if levels < 1:
         raise OptionError("{0} is {given}; give 1 or more.", "levels", given=levels)
     names = ("z", *mesh.attribute_names)
-    chosen = [channel_index(names, name) for name in channels]
+    chosen = {name: channel_index(names, name) for name in channels}
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
-    deviations = [
-        estimate_noise(mesh, columns[:, c]) if sigma is None else float(sigma) for c in chosen
-    ]
-    changed = [c for c, deviation in zip(chosen, deviations, strict=True) if deviation > 0]
-    if changed and len(mesh.faces):
-        decompositions = _Decompositions(mesh, n_pyramids, levels, prediction, locked, seed)
+    meter = Meter(progress, "denoising was cancelled; nothing was kept.")
+    meter.begin(0.0, 0.02, 1)
+    noises = {}
+    for name, c in chosen.items():
+        noises[name], columns[:, c] = noise_of(
+            mesh,
+            columns[:, c],
+            sigma,
+            noise_range=noise_range,
+            local_noise=local_noise,
+            outliers=outliers,
+            seed=seed,
+            tick=meter.tick,
+        )
+        meter.tick()
+    if found is not None:
+        found.update(noises)
+    noisy = [name for name, c in chosen.items() if _is_above_rounding(noises[name], columns[:, c])]
+    if noisy and len(mesh.faces):
+        decompositions = _Decompositions(mesh, n_pyramids, levels, prediction, locked, seed, meter)
         weighted = [
-            decompositions.weighted_sum(columns[:, c], deviation)
-            for c, deviation in zip(chosen, deviations, strict=True)
-            if deviation > 0
+            decompositions.weighted_sum(columns[:, chosen[name]], noises[name]) for name in noisy
         ]
-        _run(decompositions, weighted, progress)
-        for c, one in zip(changed, weighted, strict=True):
-            columns[:, c] = one.result
-    _report(progress, 1.0)
+        _run(decompositions, weighted, meter)
+        for name, one in zip(noisy, weighted, strict=True):
+            columns[:, chosen[name]] = one.result
+    report(progress, 1.0, "denoising was cancelled; nothing was kept.")
     return TriangleMesh._trusted(
         np.column_stack([mesh.vertices[:, :2], columns[:, 0]]),
         mesh.faces,
         columns[:, 1:].copy(),
         mesh.attribute_names,
     )
+
+
+def _is_above_rounding(noise: Noise, values: FloatArray) -> bool:
+    spread = float(np.ptp(values)) if len(values) else 0.0
+    return noise.sigma > ROUNDING * spread and spread > ROUNDING * float(np.abs(values).max())
 
 
 class _Decompositions:
@@ -153,47 +188,82 @@ class _Decompositions:
         prediction: str,
         locked: ArrayLike | None,
         seed: int,
+        meter: Meter,
     ) -> None:
         self._mesh, self._prediction, self._locked, self._seed = mesh, prediction, locked, seed
         self.n_pyramids = n_pyramids
         self.n_vertices = mesh.n_vertices
         self.levels = _depth(mesh.n_vertices, levels)
+        self._meter = meter
         noise = noise_columns(mesh.n_vertices, seed)
         n_scales = max(round(SCALES_PER_LEVEL * self.levels), 1)
-        self.bank = UndecimatedBank.from_mesh(mesh, n_scales, noise, locked)
+        meter.begin(0.02, 0.1, 150 + mesh.n_vertices // 25_000)
+        self.bank = UndecimatedBank.from_mesh(mesh, n_scales, noise, locked, meter.tick)
 
-    def weighted_sum(self, values: FloatArray, sigma: float) -> WeightedSum:
+    def weighted_sum(self, values: FloatArray, noise: Noise) -> WeightedSum:
         """Return the sum of a column's details, whose weights are yet to be fitted."""
-        return WeightedSum(values, sigma, self.bank, self.n_pyramids, self.levels, self._seed)
+        bank = self.bank
+        if not noise.is_plain:
+            bank = bank.for_noise(noise.columns(self.n_vertices, self._seed))
+        return WeightedSum(values, noise, bank, self.n_pyramids, self.levels, self._seed)
 
-    def pyramids(self) -> Iterator[tuple[Transform, list[FloatArray]]]:
-        """Yield the transform of each pyramid and how noise reaches its details."""
+    def pyramids(self) -> Iterator[Transform]:
+        """Yield the transform of each pyramid."""
         for k in range(self.n_pyramids):
-            transform = _transform(
-                self._mesh, self.levels, self._prediction, self._locked, self._seed * 1_000_003 + k
-            )
-            yield transform, noise_gains(transform, seed=self._seed)
+            seed = self._seed * 1_000_003 + k
+            pyramid = self._analysed(seed)
+            yield Transform.from_pyramid(pyramid, self._meter.tick)
+
+    def gains(self, transform: Transform, noise: Noise) -> list[FloatArray]:
+        """Return how noise reaches the details of a pyramid."""
+        if noise.is_plain:
+            return noise_gains(transform, seed=self._seed)
+        columns = noise.columns(self.n_vertices, self._seed)
+        return noise_gains(transform, columns=columns, relative=noise.relative)
+
+    def _analysed(self, seed: int) -> Pyramid:
+        """Return a random pyramid that knows x and y only."""
+        mesh = self._mesh
+        flat = np.column_stack([mesh.vertices[:, :2], np.zeros(mesh.n_vertices)])
+        plan = TriangleMesh._trusted(flat, mesh.faces, np.empty((mesh.n_vertices, 0)), ())
+        return analyse(
+            plan,
+            levels=self.levels,
+            partition="random",
+            prediction=self._prediction,
+            update="minimum_norm",
+            locked=self._locked,
+            seed=seed,
+            progress=self._meter.part,
+        )
 
 
-def _run(
-    decompositions: _Decompositions, weighted: Sequence[WeightedSum], progress: Progress | None
-) -> None:
+def _run(decompositions: _Decompositions, weighted: Sequence[WeightedSum], meter: Meter) -> None:
     """Fit the weights of every column, then sum; meshes too large to keep are gone over twice."""
     fits_in_one = decompositions.n_vertices <= _weighted_sum.MAX_FITTED
     n_parts = (decompositions.n_pyramids + TIME_OF_VERTICES) * (1 if fits_in_one else 2)
     n_done = 0
+
+    def begin(n_taken: int, n_steps: int) -> None:
+        nonlocal n_done
+        span = 0.89 / n_parts
+        meter.begin(0.1 + n_done * span, 0.1 + (n_done + n_taken) * span, n_steps)
+        n_done += n_taken
+
+    n_levels, bank = decompositions.levels, decompositions.bank
+    of_vertices = sum(VERTEX_ROUNDS + k for k in range(bank.n_scales)) * bank.n_parts
     for is_fit in (True,) if fits_in_one else (True, False):
+        begin(TIME_OF_VERTICES, len(weighted) * (of_vertices + 2 ** (bank.n_scales - 1)))
         for one in weighted:
-            (one.fit_vertices if is_fit else one.add_vertices)(
-                partial(_report, progress, n_done / n_parts)
-            )
-        n_done += TIME_OF_VERTICES
+            (one.fit_vertices if is_fit else one.add_vertices)()
         if is_fit or any(one.uses_pyramids for one in weighted):
-            for transform, gains in decompositions.pyramids():
-                _report(progress, n_done / n_parts)
+            transforms = decompositions.pyramids()
+            for _ in range(decompositions.n_pyramids):
+                begin(1, (4 + 9 * len(weighted)) * n_levels)
+                transform = next(transforms)
                 for one in weighted:
+                    gains = decompositions.gains(transform, one.noise)
                     (one.fit if is_fit else one.add)(transform, gains)
-                n_done += 1
         if is_fit:
             for one in weighted:
                 one.solve(fits_in_one)
@@ -203,25 +273,3 @@ def _depth(n_vertices: int, levels: int) -> int:
     """Return how many levels leave enough vertices."""
     most = int(np.log(max(n_vertices / LEAST_VERTICES, 1.0)) / -np.log(EXPECTED_KEPT))
     return max(min(levels, most), 1)
-
-
-def _transform(
-    mesh: TriangleMesh, levels: int, prediction: str, locked: ArrayLike | None, seed: int
-) -> Transform:
-    """Return the transform of a random pyramid that knows x and y only."""
-    flat = np.column_stack([mesh.vertices[:, :2], np.zeros(mesh.n_vertices)])
-    plan = TriangleMesh._trusted(flat, mesh.faces, np.empty((mesh.n_vertices, 0)), ())
-    pyramid = analyse(
-        plan,
-        levels=levels,
-        partition="random",
-        prediction=prediction,
-        update="minimum_norm",
-        locked=locked,
-        seed=seed,
-    )
-    return Transform.from_pyramid(pyramid)
-
-
-def _report(progress: Progress | None, fraction: float) -> None:
-    report(progress, fraction, "denoising was cancelled; nothing was kept.")

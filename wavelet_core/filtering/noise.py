@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags  # diags_array is not in SciPy 1.10
@@ -60,7 +62,12 @@ def estimate_noise(mesh: TriangleMesh, values: ArrayLike | None = None) -> float
     return float(np.median(np.abs(z[probed] - prediction @ z) / expected) / NORMAL_MAD)
 
 
-def noise_gains(transform: Transform, seed: int = 0) -> list[FloatArray]:
+def noise_gains(
+    transform: Transform,
+    seed: int = 0,
+    columns: FloatArray | None = None,
+    relative: FloatArray | None = None,
+) -> list[FloatArray]:
     r"""Return the standard deviation that white noise of 1 has in every detail coefficient.
 
     Parameters
@@ -68,6 +75,10 @@ def noise_gains(transform: Transform, seed: int = 0) -> list[FloatArray]:
     transform : Transform
     seed : int
         Of the noise that is sent through to measure each level.
+    columns : ndarray, shape (n_vertices, k), optional
+        Noise to send through instead of white one, for noise of another kind.
+    relative : ndarray, shape (n_vertices,), optional
+        Standard deviation at each vertex, where it differs from place to place.
 
     Returns
     -------
@@ -82,13 +93,15 @@ def noise_gains(transform: Transform, seed: int = 0) -> list[FloatArray]:
     white noise leave there when they are really transformed.
     """
     n_fine = len(transform.steps[-1].odd) + len(transform.steps[-1].even) if transform.steps else 0
-    measured = transform.analyse(noise_columns(n_fine, seed))[1]
-    variance = np.ones(n_fine)
+    columns = noise_columns(n_fine, seed) if columns is None else columns
+    measured = transform.analyse(columns)[1]
+    variance = np.ones(n_fine) if relative is None else relative**2
     gains: list[FloatArray] = []
     for step, detail in zip(reversed(transform.steps), reversed(measured), strict=True):
         odd, even = variance[step.odd], variance[step.even]
         of_details = odd + _squared(step.prediction) @ even
         variance = _even_variance(step, odd, even)
+        transform.tick()
         gains.append(np.sqrt(of_details * (np.mean(detail**2) / of_details.mean())))
     return gains[::-1]
 
@@ -112,7 +125,9 @@ def _squared(matrix: csr_array) -> csr_array:
     return csr_array((matrix.data**2, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
-def local_energy(step: LinearStep, energy: FloatArray, rounds: int) -> FloatArray:
+def local_energy(
+    step: LinearStep, energy: FloatArray, rounds: int, tick: Callable[[], None] | None = None
+) -> FloatArray:
     """Return values of the odd vertices averaged over their neighbourhood, ``(n_odd, ...)``.
 
     One round takes them to the even vertices of their rings and back; ``rounds`` widen it.
@@ -126,6 +141,8 @@ def local_energy(step: LinearStep, energy: FloatArray, rounds: int) -> FloatArra
     and_back = diags(1.0 / pattern.sum(axis=1)) @ pattern
     for _ in range(rounds):
         energy = and_back @ (there @ energy)
+        if tick is not None:
+            tick()
     return energy
 
 

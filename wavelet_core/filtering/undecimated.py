@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,8 +27,14 @@ PLANE_RIDGE, CURVATURE_RIDGE = 1e-9, 1e-3
 POOL_ROUNDS = 2
 #: Least variance of noise at a vertex, relative to the mean of all.
 LEAST_VARIANCE = 1e-3
+#: Vertices whose local fits are solved between two looks at whether to stop.
+FITTED_AT_ONCE = 50_000
 #: Each scale but the first smooths twice as often as the one before.
 ROUNDS_OF_SCALE = (1, 1, 2, 4, 8, 16, 32, 64, 128)
+
+
+def _nothing() -> None:
+    """Do nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +52,9 @@ class UndecimatedBank:
     strengths : ndarray, shape (n_scales,)
         What the curvatures of a scale are multiplied by to make up most of its details.
     noise : tuple of ndarray, each (n_vertices, n_parts)
-        Standard deviation that white noise of 1 leaves in the details of each scale.
+        Standard deviation that noise of 1 leaves in the details of each scale.
+    tick : callable
+        Called after every pass over the mesh; it may raise, to stop.
 
     Notes
     -----
@@ -68,6 +76,7 @@ class UndecimatedBank:
     averaging: csr_array
     strengths: FloatArray
     noise: tuple[FloatArray, ...]
+    tick: Callable[[], None] = _nothing
 
     @classmethod
     def from_mesh(
@@ -76,6 +85,7 @@ class UndecimatedBank:
         n_scales: int,
         noise: FloatArray,
         locked: ArrayLike | None = None,
+        tick: Callable[[], None] = _nothing,
     ) -> UndecimatedBank:
         """Return the bank of a mesh.
 
@@ -88,25 +98,36 @@ class UndecimatedBank:
             White noise of standard deviation 1, to measure what arrives at each scale.
         locked : array_like of bool, shape (n_vertices,), optional
             Vertices without details.
+        tick : callable
+            See the attribute.
         """
-        rows, columns, offsets = _rings(mesh)
+        tick()
+        rows, columns, offsets = rings(mesh, tick)
         is_free = np.ones(mesh.n_vertices)
         if locked is not None:
             is_free -= np.asarray(locked, dtype=bool)
-        smoother = _smoother(rows, columns, offsets, mesh.n_vertices)
+        tick()
+        smoother = _smoother(rows, columns, offsets, mesh.n_vertices, tick)
         averaging = csr_array(
             (np.ones(len(rows)), (rows, columns)), shape=(mesh.n_vertices, mesh.n_vertices)
         )
         bank = cls(
             csr_array(diags(is_free) @ smoother + diags(1.0 - is_free)),
-            tuple(csr_array(diags(is_free) @ one) for one in _curvatures(rows, columns, offsets))
+            tuple(
+                csr_array(diags(is_free) @ one) for one in _curvatures(rows, columns, offsets, tick)
+            )
             if mesh.n_vertices >= LEAST_FOR_DIRECTIONS
             else (),
             csr_array(diags(1.0 / averaging.sum(axis=1)) @ averaging),
             np.ones(min(n_scales, len(ROUNDS_OF_SCALE))),
             (),
+            tick,
         )
         return bank._measured(noise)
+
+    def for_noise(self, columns: FloatArray) -> UndecimatedBank:
+        """Return the bank for noise of another kind, of which columns are given."""
+        return self._measured(columns, keeps_strengths=True)
 
     @property
     def n_scales(self) -> int:
@@ -130,6 +151,7 @@ class UndecimatedBank:
         energy = energy.reshape(shape[0], -1)
         for _ in range(rounds):
             energy = self.averaging @ energy
+            self.tick()
         return energy.reshape(shape)
 
     def _split(
@@ -138,14 +160,19 @@ class UndecimatedBank:
         smooth = columns
         for _ in range(ROUNDS_OF_SCALE[scale]):
             smooth = self.smoother @ smooth
-        return columns - smooth, [one @ columns for one in self.curvatures], smooth
+            self.tick()
+        along = []
+        for one in self.curvatures:
+            along.append(one @ columns)
+            self.tick()
+        return columns - smooth, along, smooth
 
-    def _measured(self, noise: FloatArray) -> UndecimatedBank:
+    def _measured(self, noise: FloatArray, *, keeps_strengths: bool = False) -> UndecimatedBank:
         """Return the bank with the strengths and deviations that noise shows."""
-        strengths, deviations, columns = np.ones(self.n_scales), [], noise
+        strengths, deviations, columns = self.strengths.copy(), [], noise
         for scale in range(self.n_scales):
             details, along, columns = self._split(columns, scale)
-            if along:
+            if along and not keeps_strengths:
                 together = sum(along[1:], start=along[0])
                 most = float(np.sum(together**2))
                 strengths[scale] = float(np.sum(details * together)) / most if most > 0 else 0.0
@@ -162,55 +189,88 @@ def _parts(details: FloatArray, along: list[FloatArray], strength: float) -> Flo
     return np.stack([*parts, details - sum(parts)], axis=2)
 
 
-def _rings(mesh: TriangleMesh) -> tuple[IndexArray, IndexArray, FloatArray]:
+def rings(
+    mesh: TriangleMesh, tick: Callable[[], None] = _nothing
+) -> tuple[IndexArray, IndexArray, FloatArray]:
     """Return vertex, neighbour and offset in mean ring distances; every vertex is its own too."""
     n = mesh.n_vertices
     a, b, c = mesh.faces.T
     start, end = np.concatenate([a, b, c, b, c, a]), np.concatenate([b, c, a, a, b, c])
     pattern = csr_array((np.ones(len(start)), (start, end)), shape=(n, n))
     pattern = csr_array(pattern + identity(n))
+    tick()
     pattern.sort_indices()
+    tick()
     rows = np.repeat(np.arange(n), np.diff(pattern.indptr))
     columns = pattern.indices.astype(np.int64)
     offsets = mesh.vertices[columns, :2] - mesh.vertices[rows, :2]
+    tick()
     total = np.bincount(rows, np.hypot(*offsets.T), n)
     mean = total / np.maximum(np.bincount(rows, minlength=n) - 1, 1)
     return rows, columns, offsets / np.where(mean > 0, mean, 1.0)[rows, None]
 
 
-def _smoother(rows: IndexArray, columns: IndexArray, offsets: FloatArray, n: int) -> csr_array:
+def _smoother(
+    rows: IndexArray,
+    columns: IndexArray,
+    offsets: FloatArray,
+    n: int,
+    tick: Callable[[], None] = _nothing,
+) -> csr_array:
     """Return the value at each vertex of a plane fitted to it and its ring, by least squares."""
-    weights = np.exp(-0.5 * np.sum(offsets**2, axis=1) / SMOOTHER_WIDTH**2)
-    terms = np.column_stack([np.ones(len(rows)), offsets])
-    normal = _normal_equations(rows, weights, terms, n)
-    normal[:, [1, 2], [1, 2]] += PLANE_RIDGE * normal[:, :1, 0]
-    value = np.linalg.inv(normal)[:, 0]
-    entries = np.einsum("ek,ek->e", value[rows], terms) * weights
+    entries = np.empty(len(rows))
+    for part, here, n_here in _blocks(rows, n):
+        dx = offsets[part]
+        weights = np.exp(-0.5 * np.sum(dx**2, axis=1) / SMOOTHER_WIDTH**2)
+        terms = np.column_stack([np.ones(len(here)), dx])
+        normal = _normal_equations(here, weights, terms, n_here)
+        normal[:, [1, 2], [1, 2]] += PLANE_RIDGE * normal[:, :1, 0]
+        value = np.linalg.inv(normal)[:, 0]
+        entries[part] = np.einsum("ek,ek->e", value[here], terms) * weights
+        tick()
     return csr_array((entries, (rows, columns)), shape=(n, n))
 
 
-def _curvatures(rows: IndexArray, columns: IndexArray, offsets: FloatArray) -> list[csr_array]:
+def _curvatures(
+    rows: IndexArray,
+    columns: IndexArray,
+    offsets: FloatArray,
+    tick: Callable[[], None] = _nothing,
+) -> list[csr_array]:
     """Return half the second derivatives along directions, of quadratics through each vertex."""
     n = int(rows[-1]) + 1
-    dx, dy = offsets.T
-    weights = np.where(rows == columns, 0.0, 1.0 / np.maximum(np.hypot(dx, dy), 0.3))
-    terms = np.column_stack([dx, dy, dx**2, dx * dy, dy**2])
-    normal = _normal_equations(rows, weights, terms, n)
-    size = np.maximum(np.trace(normal, axis1=1, axis2=2), 1e-12)[:, None]
-    # No ridge to speak of on the slope: a plane must have no curvature, however steep.
-    normal[:, [0, 1], [0, 1]] += PLANE_RIDGE * size
-    normal[:, [2, 3, 4], [2, 3, 4]] += CURVATURE_RIDGE * size
-    inverse = np.linalg.inv(normal)
-    second = np.stack(
-        [np.einsum("ek,ek->e", inverse[rows, k], terms) * weights for k in (2, 3, 4)], axis=1
-    )
+    second = np.empty((len(rows), 3))
+    for part, here, n_here in _blocks(rows, n):
+        dx, dy = offsets[part].T
+        is_own = rows[part] == columns[part]
+        weights = np.where(is_own, 0.0, 1.0 / np.maximum(np.hypot(dx, dy), 0.3))
+        terms = np.column_stack([dx, dy, dx**2, dx * dy, dy**2])
+        normal = _normal_equations(here, weights, terms, n_here)
+        size = np.maximum(np.trace(normal, axis1=1, axis2=2), 1e-12)[:, None]
+        # No ridge to speak of on the slope: a plane must have no curvature, however steep.
+        normal[:, [0, 1], [0, 1]] += PLANE_RIDGE * size
+        normal[:, [2, 3, 4], [2, 3, 4]] += CURVATURE_RIDGE * size
+        inverse = np.linalg.inv(normal)
+        for column, k in enumerate((2, 3, 4)):
+            second[part, column] = np.einsum("ek,ek->e", inverse[here, k], terms) * weights
+        tick()
     found = []
     for angle in np.pi / N_DIRECTIONS * np.arange(N_DIRECTIONS):
         east, north = np.cos(angle), np.sin(angle)
-        entries = second @ [east**2, east * north, north**2]
+        entries = east**2 * second[:, 0] + east * north * second[:, 1] + north**2 * second[:, 2]
         entries = np.where(rows == columns, -np.bincount(rows, entries, n)[rows], entries)
         found.append(csr_array((entries, (rows, columns)), shape=(n, n)))
+        tick()
     return found
+
+
+def _blocks(rows: IndexArray, n: int) -> Iterator[tuple[slice, IndexArray, int]]:
+    """Yield entries of some vertices at once, their rows counted from the first, and how many."""
+    for first in range(0, n, FITTED_AT_ONCE):
+        stop = min(first + FITTED_AT_ONCE, n)
+        start, end = np.searchsorted(rows, [first, stop])
+        part = slice(int(start), int(end))
+        yield part, rows[part] - first, stop - first
 
 
 def _normal_equations(

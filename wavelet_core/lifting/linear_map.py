@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +32,10 @@ class LinearStep:
     locked: NDArray[np.bool_]
 
 
+def _nothing() -> None:
+    """Do nothing."""
+
+
 @dataclass(frozen=True, slots=True)
 class Transform:
     """Analysis and synthesis of any columns with the filters of one pyramid.
@@ -46,13 +50,16 @@ class Transform:
         ``steps[level]`` leads from level + 1 to level.
     is_sequential : bool
         Whether the update is the one-ring mean, applied vertex by vertex.
+    tick : callable
+        Called after every step that is taken; it may raise, to stop.
     """
 
     steps: tuple[LinearStep, ...]
     is_sequential: bool
+    tick: Callable[[], None] = _nothing
 
     @classmethod
-    def from_pyramid(cls, pyramid: Pyramid) -> Transform:
+    def from_pyramid(cls, pyramid: Pyramid, tick: Callable[[], None] = _nothing) -> Transform:
         """Return the transform of a pyramid."""
         n_fine = pyramid.n_vertices(pyramid.n_levels)
         integrals = np.ones(n_fine)
@@ -65,7 +72,8 @@ class Transform:
             locked = locked[even]
             update = update_filter(pyramid.update, prediction, odd_integrals, integrals, locked)
             steps.append(LinearStep(step.odd, even, prediction, update, locked))
-        return cls(tuple(reversed(steps)), UPDATES.find(pyramid.update).is_sequential)
+            tick()
+        return cls(tuple(reversed(steps)), UPDATES.find(pyramid.update).is_sequential, tick)
 
     def analyse(self, columns: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
         """Return the coarse coefficients and the details of columns ``(n_vertices, k)``.
@@ -90,6 +98,7 @@ class Transform:
             else:
                 columns = coarse + step.update @ detail
             details.append(detail)
+            self.tick()
         return columns, details[::-1]
 
     def synthesise(self, coarse: FloatArray, details: list[FloatArray]) -> FloatArray:
@@ -120,4 +129,5 @@ class Transform:
         fine[step.odd] = step.prediction @ coarse
         if detail is not None:
             fine[step.odd] += detail
+        self.tick()
         return fine

@@ -362,7 +362,8 @@ class Pyramid:
         sigma : float, optional
             Standard deviation of the noise; by default estimated from the finest level.
         **options
-            ``method``, ``strength``, ``local``, ``by_level`` and ``channels`` of
+            ``method``, ``strength``, ``local``, ``by_level``, ``channels``, ``finest`` and
+            ``progress`` of
             :func:`wavelet_core.filtering.thresholds.denoised`, which says what they mean.
         """
         from ..filtering.thresholds import denoised

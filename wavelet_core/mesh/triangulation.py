@@ -102,7 +102,7 @@ def delaunay_faces(plan: FloatArray, edges: IntArray | None = None) -> IntArray:
 
 def _require_not_collinear(plan: FloatArray) -> None:
     centred = plan - plan.mean(axis=0)
-    covariance = centred.T @ centred
+    covariance = np.einsum("vi,vj->ij", centred, centred)  # BLAS: other digits by its threads
     smallest, largest = np.linalg.eigvalsh(covariance)
     if largest == 0 or smallest <= 1e-15 * largest:  # eigenvalues err by eps * largest
         raise MeshError("all points lie on one line in plan; a surface needs more than that.")

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 import wavelet_core
 from wavelet_core import Cancelled, Progress, Pyramid, PyramidError, Step, WaveletError
 from wavelet_core.metrics import LevelErrors
+from wavelet_core.partition.stopping import REASONS, StopRecord
 from wavelet_core.progress import report
 from wavelet_gis._fields import LONGEST_JSON, Fields, parse_json
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
@@ -280,6 +281,7 @@ def _to_parts(geo: GeoPyramid) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
             "update": pyramid.update,
             "has_locked": pyramid.locked is not None,
             "parameters": dict(pyramid.parameters),
+            "stop": None if pyramid.stop is None else pyramid.stop._asdict(),
         },
         "crs": geo.system.to_dict(),
         "frame": geo.frame.to_dict(),
@@ -321,6 +323,7 @@ def _from_parts(contents: _Contents, arrays: StoredArrays) -> GeoPyramid:
         update=described.text("update"),
         locked=arrays.get("locked", "|u1", 1).astype(bool) if has_locked else None,
         parameters=dict(described.fields("parameters")),
+        stop=_stop_from(described),
     )
     fields = metadata.fields("source")
     _check_source(fields)
@@ -344,6 +347,22 @@ def _from_parts(contents: _Contents, arrays: StoredArrays) -> GeoPyramid:
         notes=tuple(Note.from_dict(fields) for fields in metadata.objects("notes"))
         if "notes" in metadata
         else (),
+    )
+
+
+def _stop_from(described: Fields) -> StopRecord | None:
+    """Return why the analysis ended; files of before do not tell."""
+    if described.get("stop") is None:
+        return None
+    stored = described.fields("stop")
+    target = stored["target_vertices"]
+    return StopRecord(
+        stored.choice("reason", tuple(REASONS)),
+        n_vertices=stored.integer("n_vertices"),
+        n_locked=stored.integer("n_locked"),
+        n_outline=stored.integer("n_outline"),
+        n_inner=stored.integer("n_inner"),
+        target_vertices=None if target is None else stored.integer("target_vertices"),
     )
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from wavelet_core import Progress, Pyramid, TriangleMesh
 from wavelet_core.metrics import LevelErrors, level_errors
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.model.attributes.categories import Categories, is_category, with_own_values
 from wavelet_gis.model.mesh_origin import mesh_in_file
 from wavelet_gis.model.origin import Origin, Original
 from wavelet_gis.notes import Note
@@ -113,9 +114,32 @@ class GeoPyramid:
         mesh = self.pyramid.synthesise() if finest is None else finest
         return self.origin.restore(mesh, self.frame)
 
-    def file_mesh(self, mesh: TriangleMesh) -> TriangleMesh:
-        """Return a mesh of the pyramid in the coordinates of the input."""
-        return mesh_in_file(mesh, self.frame)
+    @property
+    def categories(self) -> tuple[str, ...]:
+        """Names of the attributes whose numbers are names, such as classes."""
+        points = self.origin.points
+        if points is not None:
+            return tuple(a.name for a in points.cloud.attributes if is_category(a.dimension))
+        return tuple(name for name in self.pyramid.attribute_names if is_category(name))
+
+    def own_categories(self, mesh: TriangleMesh) -> TriangleMesh:
+        """Return a mesh of the pyramid with the categories of the input's nearest vertices."""
+        names = self.categories
+        return with_own_values(mesh, self.pyramid.synthesise(), names) if names else mesh
+
+    def file_mesh(self, mesh: TriangleMesh, *, categories: Categories = "nearest") -> TriangleMesh:
+        """Return a mesh of the pyramid in the coordinates of the input.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            In the working frame.
+        categories : {"nearest", "number"}
+            Categories are those of the nearest input vertex, or, as in the paper, the numbers
+            that the filters made of them.
+        """
+        own = self.own_categories(mesh) if categories == "nearest" else mesh
+        return mesh_in_file(own, self.frame)
 
     def file_details(self, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return detail vectors with their elevations in the input's unit of z.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
+from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.styles import detail_style, tin_style, vertex_style
 from wavelet_gis.products.wkb import points_wkb, triangles_wkb
@@ -70,6 +71,7 @@ def tin_layers(
     mesh: TriangleMesh,
     vertex_ids: NDArray[np.int64],
     name: str = "tin",
+    categories: Categories = "nearest",
 ) -> Iterator[Layer]:
     """Yield the layers of a TIN: ``<name>_tin`` and ``<name>_vertices``.
 
@@ -83,7 +85,11 @@ def tin_layers(
         Ids of the vertices in the input.
     name : str
         What the layers' names begin with.
+    categories : {"nearest", "number"}
+        See `GeoPyramid.file_mesh`.
     """
+    if categories == "nearest":
+        mesh = geo.own_categories(mesh)
     vertices = geo.frame.to_file(mesh.vertices)
     corners = vertices[mesh.faces]
     elevation = corners[:, :, 2].mean(axis=1)

@@ -6,6 +6,7 @@ import numpy as np
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
+from wavelet_gis.model.attributes.categories import Categories, nearest_vertices
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.rasterise import geometry_over, rasterise
@@ -20,6 +21,7 @@ def surface_dem(
     *,
     cell_size: float | None = None,
     attribute: str | None = None,
+    categories: Categories = "nearest",
 ) -> Dem:
     """Return the values of a mesh of the pyramid at the cell centres of a grid.
 
@@ -35,6 +37,9 @@ def surface_dem(
         spacing of the mesh's vertices.
     attribute : str, optional
         What to evaluate instead of the elevation.
+    categories : {"nearest", "number"}
+        A category, such as a class, is that of the nearest vertex, or, as in the paper, a number
+        like any other.
 
     Returns
     -------
@@ -47,7 +52,7 @@ def surface_dem(
     OptionError
         When there is no such attribute.
     """
-    in_file = geo.file_mesh(mesh)
+    in_file = geo.file_mesh(mesh, categories=categories)
     values = _attribute_values(in_file, attribute) if attribute else None
     given = geo.origin.grid
     if given is not None and not cell_size:
@@ -55,6 +60,12 @@ def surface_dem(
     else:
         geometry = _geometry(in_file, cell_size or point_cell_size(geo))
     grid = rasterise(in_file, geometry, values)
+    if values is not None and attribute in geo.categories and categories == "nearest":
+        rows, columns = np.nonzero(np.isfinite(grid))
+        x, y = geometry.centres(columns, rows)
+        local = np.column_stack([geo.frame.local_x(x), geo.frame.local_y(y)])
+        if len(local):
+            grid[rows, columns] = values[nearest_vertices(mesh, local)]
     if given is None or given.dtype != np.float64:
         grid = grid.astype(np.float32)
     covered = np.isfinite(grid)

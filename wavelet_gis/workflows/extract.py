@@ -14,6 +14,7 @@ from wavelet_core.accuracy.between_levels import PartialMesh, mesh_of_accuracy, 
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import Cover, surface_errors
 from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
+from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
@@ -69,6 +70,7 @@ class Surface:
         cell_size: float | None = None,
         attribute: str | None = None,
         cog: bool = False,
+        categories: Categories = "nearest",
     ) -> dict[str, int]:
         """Write it as a TIN or a raster; see `wavelet_gis.workflows.save.save`.
 
@@ -78,6 +80,8 @@ class Surface:
             A file that does not exist yet.
         cell_size, attribute, cog
             Of a raster; see `wavelet_gis.workflows.save.write_surface_raster`.
+        categories : {"nearest", "number"}
+            See `wavelet_gis.model.geo_pyramid.GeoPyramid.file_mesh`.
 
         Returns
         -------
@@ -89,9 +93,16 @@ class Surface:
         )
         if suffix_of(path) in RASTER_SUFFIXES:
             return write_surface_raster(
-                path, self.geo, self.mesh, cell_size=cell_size, attribute=attribute, cog=cog
+                path,
+                self.geo,
+                self.mesh,
+                cell_size=cell_size,
+                attribute=attribute,
+                cog=cog,
+                categories=categories,
             )
-        write_tin(path, self.geo, self.mesh, self.vertex_ids, f"level_{self.level:02d}")
+        name = f"level_{self.level:02d}"
+        write_tin(path, self.geo, self.mesh, self.vertex_ids, name, categories)
         return {}
 
     def figures(self) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,9 @@ import numpy as np
 from wavelet_core import OptionError, Progress, Pyramid, TriangleMesh, band_gains, denoise, relifted
 from wavelet_core.filtering.gains import channel_index
 from wavelet_core.filtering.noise import estimate_noise
+from wavelet_core.filtering.noise_model import Noise, RangeOption
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
+from wavelet_gis.model.attributes.categories import category_gains
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.progress import part_of
@@ -24,6 +26,8 @@ __all__ = ["Filtered", "chosen_gains", "denoised", "filter_pyramid", "with_level
 
 #: How many pyramids in random order denoising averages.
 N_PYRAMIDS = 8
+#: Options that tell of the noise, beside its deviation.
+NOISE_OPTIONS = ("noise_range", "local_noise", "outliers")
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +115,9 @@ def filter_pyramid(
     denoise: bool | float = False,
     n_pyramids: int = N_PYRAMIDS,
     channels: Sequence[str] = ("z",),
+    noise_range: RangeOption = 0.0,
+    local_noise: bool = False,
+    outliers: bool = False,
     progress: Progress | None = None,
 ) -> Filtered:
     """Return a pyramid with noise taken out, then chosen scales damped, boosted or isolated.
@@ -127,9 +134,16 @@ def filter_pyramid(
         Whether noise is taken out; a number is its standard deviation, in the input's unit, which
         is estimated otherwise.
     n_pyramids : int
-        How many pyramids in random order are averaged; 0 thresholds the details of this one.
+        How many pyramids in random order are averaged; 0 thresholds the details of one.
     channels : sequence of str
         Which to take noise from.
+    noise_range : float or "estimate"
+        Distance at which the correlation of the noise has fallen to 1/e, in metres where the CRS
+        tells its unit, else in its own; 0 for white noise.
+    local_noise : bool
+        Whether the noise differs by place, and is measured there.
+    outliers : bool
+        Whether values that stand out of their ring are replaced before all else.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -141,8 +155,8 @@ def filter_pyramid(
     Raises
     ------
     OptionError
-        Nothing to do, bounds in the wrong order, levels or channels that are not there; nothing
-        has been computed yet.
+        Nothing to do, bounds in the wrong order, levels or channels that are not there, kinds of
+        noise without denoising; nothing has been computed yet.
     Cancelled
         ``progress`` returned False.
     """
@@ -154,6 +168,10 @@ def filter_pyramid(
         raise OptionError(
             "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
         )
+    if not asks_denoising and (noise_range != 0.0 or local_noise or outliers):
+        raise OptionError(
+            "{0}, {1} and {2} tell of noise; give {3} too.", *NOISE_OPTIONS, "denoise"
+        )
     wanted = chosen_gains(geo, single, levels=levels, metres=metres)
     changed, sigmas = geo, dict[str, float]()
     finest_before = geo.pyramid.synthesise()
@@ -163,6 +181,9 @@ def filter_pyramid(
             None if denoise is True else denoise,
             channels=channels,
             n_pyramids=n_pyramids,
+            noise_range=noise_range,
+            local_noise=local_noise,
+            outliers=outliers,
             finest=finest_before,
             progress=progress,
         )
@@ -185,6 +206,9 @@ def denoised(
     *,
     channels: Sequence[str] = ("z",),
     n_pyramids: int = N_PYRAMIDS,
+    noise_range: RangeOption = 0.0,
+    local_noise: bool = False,
+    outliers: bool = False,
     finest: TriangleMesh | None = None,
     progress: Progress | None = None,
 ) -> tuple[GeoPyramid, dict[str, float]]:
@@ -199,7 +223,10 @@ def denoised(
     channels : sequence of str
         Which to take it from.
     n_pyramids : int
-        How many pyramids in random order are averaged; 0 thresholds the details of this one.
+        How many pyramids in random order are averaged; 0 thresholds the details of one.
+    noise_range, local_noise, outliers
+        As for `wavelet_core.denoise`; the range in metres where the CRS tells its unit, else in
+        its own. Not with thresholds.
     finest : TriangleMesh, optional
         The pyramid's finest mesh, where it has been synthesised already.
     progress : callable, optional
@@ -220,28 +247,58 @@ def denoised(
     pyramid, sigmas = geo.pyramid, dict[str, float]()
     for name in channels:
         channel_index(pyramid.channels, name)
+        if name in geo.categories:
+            raise OptionError(
+                "{name} is a category and has no noise; name another channel.",
+                "channels",
+                name=name,
+            )
+    if n_pyramids == 0 and (noise_range != 0.0 or local_noise or outliers):
+        raise OptionError(
+            "thresholds know white noise only; leave out {0}, {1} and {2}, or average one or more "
+            "pyramids with {3}.",
+            *NOISE_OPTIONS,
+            "n_pyramids",
+        )
+    reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
+    described = []
     mesh = pyramid.synthesise() if finest is None else finest
     for k, name in enumerate(channels):
         if k > 0:
             mesh = pyramid.synthesise()
         unit = geo.frame.z_scale if name == "z" else 1.0
-        deviation = _noise_of(pyramid, mesh, name) if sigma is None else sigma * unit
-        sigmas[name] = deviation / unit
+        part = part_of(progress, k / len(channels), (k + 1) / len(channels))
         if n_pyramids == 0:
-            pyramid = pyramid.denoised(deviation, channels=[name])
+            deviation = _noise_of(pyramid, mesh, name) if sigma is None else sigma * unit
+            sigmas[name] = deviation / unit
+            described.append(f"{name} {sigmas[name]:.4g}")
+            pyramid = pyramid.denoised(deviation, channels=[name], finest=mesh, progress=part)
             continue
+        found: dict[str, Noise] = {}
         clean = denoise(
             mesh,
-            deviation,
+            None if sigma is None else sigma * unit,
             n_pyramids=n_pyramids,
             channels=[name],
             locked=pyramid.locked,
-            progress=part_of(progress, k / len(channels), (k + 1) / len(channels)),
+            noise_range=reach,
+            local_noise=local_noise,
+            outliers=outliers,
+            found=found,
+            progress=part,
         )
+        noise = found[name]
+        sigmas[name] = noise.sigma / unit
+        in_file = replace(
+            noise,
+            sigma=noise.sigma / unit,
+            quantum=noise.quantum / unit,
+            reach=noise.reach / _metre(geo),
+        )
+        described.append(f"{name} {in_file.describe()}")
         pyramid = relifted(pyramid, clean)
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
-    listed = ", ".join(f"{name} {deviation:.4g}" for name, deviation in sigmas.items())
-    line = f"denoised by {how}, standard deviation of the noise: {listed}"
+    line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
     return geo.with_pyramid(pyramid, line), sigmas
 
 
@@ -273,8 +330,7 @@ def chosen_gains(
     """
     chosen: dict[int, float] = {}
     if metres is not None:
-        is_metric = geo.system.kind == "geographic"
-        unit = 1.0 if is_metric else 1.0 / geo.system.horizontal_unit
+        unit = _metre(geo)
         chosen = band_gains(geo.pyramid, lengths=(metres[0] * unit, metres[1] * unit))
     elif levels is not None:
         chosen = band_gains(geo.pyramid, levels=levels)
@@ -294,17 +350,23 @@ def with_level_gains(
     geo : GeoPyramid
         What is filtered.
     gains : dict of int to float
-        By level; others keep 1.
+        By level; others keep 1. Categories, such as classes, stay as they are.
     drop_coarse : bool
         Leave out the coarsest surface too, so that the details remain by themselves.
     """
-    pyramid = geo.pyramid.with_gains(gains, 0.0 if drop_coarse else 1.0)
+    channels, categories = geo.pyramid.channels, geo.categories
+    coarse = [0.0 if drop_coarse and name not in categories else 1.0 for name in channels]
+    pyramid = geo.pyramid.with_gains(category_gains(gains, channels, categories), coarse)
     named = ", ".join(f"{level}={gain:g}" for level, gain in sorted(gains.items()))
     line = f"gains {named or 'unchanged'}" + ", without the coarse surface" * drop_coarse
     return geo.with_pyramid(pyramid, line)
 
 
+def _metre(geo: GeoPyramid) -> float:
+    """Return a metre in the unit of the working frame, where that is known."""
+    return 1.0 if geo.system.kind == "geographic" else 1.0 / geo.system.horizontal_unit
+
+
 def _noise_of(pyramid: Pyramid, finest: TriangleMesh, channel: str) -> float:
-    first = 2 if pyramid.signal == "z" else 0
-    columns = np.column_stack([finest.vertices, finest.attributes])
-    return estimate_noise(finest, columns[:, first + channel_index(pyramid.channels, channel)])
+    column = channel_index(pyramid.channels, channel)
+    return estimate_noise(finest, pyramid.columns_of(finest)[:, column])

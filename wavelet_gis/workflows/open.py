@@ -22,6 +22,7 @@ from wavelet_gis.io.formats import (
     VECTOR_SUFFIXES,
     suffix_of,
 )
+from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.origin import ORIGINS
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem, terrain_of_mesh
@@ -42,6 +43,7 @@ def open_terrain(
     attributes: Sequence[str] = (),
     classes: Sequence[int] | None = None,
     carry: bool = True,
+    class_channels: bool = False,
     crs: str | None = None,
     vertical_unit: str | None = None,
     keep_noise: bool = False,
@@ -60,6 +62,8 @@ def open_terrain(
         Of a raster, from 1.
     attributes, classes, carry, keep_noise, keep_withheld
         Of a point cloud; see `wavelet_gis.io.las.read_cloud`.
+    class_channels : bool
+        Lift classes, return numbers and other categories as one channel of 0 and 1 each.
     crs : str, optional
         Instead of the CRS in the file.
     vertical_unit : str, optional
@@ -97,6 +101,8 @@ def open_terrain(
             keep_noise=keep_noise,
             keep_withheld=keep_withheld,
         )
+        if class_channels:
+            cloud = one_channel_per_category(cloud)
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
             os.fspath(path),

@@ -22,6 +22,7 @@ from wavelet_gis.io.formats import (
     RASTER_SUFFIXES,
     suffix_of,
 )
+from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = [
@@ -162,6 +163,7 @@ def write_tin(
     mesh: TriangleMesh,
     vertex_ids: NDArray[np.int64],
     name: str,
+    categories: Categories = "nearest",
 ) -> None:
     """Write a mesh of a pyramid as GeoPackage layers or as a mesh file, by the suffix.
 
@@ -177,16 +179,18 @@ def write_tin(
         Ids of its vertices in the input.
     name : str
         What the layers' names begin with.
+    categories : {"nearest", "number"}
+        See `wavelet_gis.model.geo_pyramid.GeoPyramid.file_mesh`.
     """
     if suffix_of(path) == PYRAMID_SUFFIX:
         from wavelet_gis.io.vector import add_layers
         from wavelet_gis.products.layers import tin_layers
 
-        add_layers(path, tin_layers(geo, mesh, vertex_ids, name), geo.system)
+        add_layers(path, tin_layers(geo, mesh, vertex_ids, name, categories), geo.system)
     else:
         from wavelet_gis.io import meshes
 
-        meshes.write_mesh(path, geo.file_mesh(mesh), geo.system.wkt)
+        meshes.write_mesh(path, geo.file_mesh(mesh, categories=categories), geo.system.wkt)
 
 
 def write_surface_raster(
@@ -197,6 +201,7 @@ def write_surface_raster(
     cell_size: float | None = None,
     attribute: str | None = None,
     cog: bool = False,
+    categories: Categories = "nearest",
 ) -> dict[str, int]:
     """Write a mesh of a pyramid as a raster; return its size and the cells without data.
 
@@ -208,7 +213,7 @@ def write_surface_raster(
         Gives the frame, the CRS, and the grid where it was made from a raster.
     mesh : TriangleMesh
         In the working frame.
-    cell_size, attribute
+    cell_size, attribute, categories
         See `wavelet_gis.products.level_raster.surface_dem`.
     cog : bool
         Whether it is a cloud-optimised GeoTIFF.
@@ -216,7 +221,7 @@ def write_surface_raster(
     from wavelet_gis.io.raster import write_cog, write_dem
     from wavelet_gis.products.level_raster import surface_dem
 
-    dem = surface_dem(geo, mesh, cell_size=cell_size, attribute=attribute)
+    dem = surface_dem(geo, mesh, cell_size=cell_size, attribute=attribute, categories=categories)
     (write_cog if cog else write_dem)(path, dem, geo.system.wkt)
     n_rows, n_columns = dem.geometry.shape
     return {

@@ -156,3 +156,44 @@ def test_a_step_of_lidar_points_moves_by_no_more_than_noise():
     assert np.std(clean - truth) < 0.5 * 0.05
     beside = np.abs(points[:, 0] - 50) < 2
     assert np.abs(clean - truth)[beside].max() < 6 * 0.05
+
+
+SURFACES = {
+    "plane": lambda x, y: 3 * x + y,
+    "constant": lambda x, y: np.zeros_like(x),
+    "clean hills": lambda x, y: 4 * np.sin(5 * x) * np.cos(4 * y),
+    "clean bank": lambda x, y: 2.0 * (x > 0.5),
+    "one spike": lambda x, y: 1.0 * ((x == x[0, 11]) & (y == y[13, 0])),
+    "noisy plane": lambda x, y: 3 * x + np.random.default_rng(0).normal(0, 0.1, x.shape),
+    "steep, far": lambda x, y: 1e6 + 5e3 * x,
+}
+
+
+@pytest.mark.parametrize("n", [24, 60], ids=["without directions", "with directions"])
+@pytest.mark.parametrize("surface", SURFACES)
+def test_any_sigma_over_any_surface_gives_a_surface_within_it(surface, n):
+    # Cholesky met matrices that were "not positive definite" wherever no detail stood out of the
+    # noise: clean hills, a plane, a sigma well above the noise.
+    elevation = SURFACES[surface](*np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n)))
+    spread = max(np.ptp(elevation), 1.0)
+    mesh = mesh_of(elevation)
+    for sigma in (0.0, 1e-300, 1e-12, 1e-3, 0.1, 1.0, 100.0, 1e8):
+        z = denoise(mesh, sigma, n_pyramids=1).vertices[:, 2]
+        assert np.isfinite(z).all()
+        assert z.min() > elevation.min() - 0.3 * spread
+        assert z.max() < elevation.max() + 0.3 * spread
+        if sigma < 1e-11:
+            np.testing.assert_allclose(z, elevation.ravel(), atol=1e-6 * spread)
+        if surface in ("plane", "constant", "steep, far"):
+            np.testing.assert_allclose(z, elevation.ravel(), atol=1e-5 * spread)
+
+
+def test_a_sigma_above_the_noise_smooths():
+    truth = SURFACES["clean hills"](*np.meshgrid(np.linspace(0, 1, 60), np.linspace(0, 1, 60)))
+    mesh = mesh_of(truth + np.random.default_rng(0).normal(0, 0.1, truth.shape))
+    left = [
+        np.std(np.diff(denoise(mesh, s, n_pyramids=2).vertices[:, 2].reshape(60, 60), 2, axis=0))
+        for s in (0.0, 0.1, 1.0, 10.0, 1e7)
+    ]
+    assert left[0] > 3 * left[1] > 3 * left[2]
+    assert left[4] < 0.25 * left[0]

@@ -295,3 +295,27 @@ def test_noise_that_is_not_white_is_met_level_by_level():
 def test_a_pyramid_without_levels_passes_through():
     pyramid = analyse(TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 1]], [[0, 1, 2]]))
     assert pyramid.denoised(1.0) is pyramid
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"partition": "quadric"},
+        {"partition": "random"},
+        {"partition": "random", "prediction": "plane"},
+        {"signal": "xyz"},
+    ],
+    ids=["default", "paper", "random", "plain", "xyz"],
+)
+def test_thresholds_take_the_noise_out_of_any_partition(options):
+    # The default partition keeps what stands out: 80 % of the noise was left.
+    x = np.arange(60.0)
+    truth = 4 * np.sin(x / 15) * np.cos(x[:, None] / 12)
+    noisy = truth + np.random.default_rng(0).normal(0, 0.3, truth.shape)
+    pyramid = analyse(TriangleMesh.from_grid(noisy, x=x, y=x), **options)
+    clean = pyramid.denoised(0.3)
+    left = np.std(clean.synthesise().vertices[:, 2] - truth.ravel())
+    assert left < 0.4 * 0.3
+    assert clean.n_levels == pyramid.n_levels
+    np.testing.assert_array_equal(clean.steps[0].odd, pyramid.steps[0].odd)

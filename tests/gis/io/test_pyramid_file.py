@@ -155,7 +155,7 @@ LIGHT = [
     "io.atomic",
     "cli.console",
     "errors",
-    "model.ground",
+    "model.attributes.ground",
 ]
 
 

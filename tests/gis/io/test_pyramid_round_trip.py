@@ -17,6 +17,7 @@ from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.notes import Note
 from wavelet_gis.workflows.open import open_terrain
 
 #: Each example writes a file; compilation makes the first one slow.
@@ -63,6 +64,8 @@ def assert_equal(a, b, where="pyramid"):
         assert a.astype(b.dtype).tobytes() == b.tobytes(), where
     elif isinstance(a, np.dtype):
         assert a == b, where  # '<i2' and 'int16' are the same
+    elif isinstance(a, Note):
+        assert a.to_dict() == b.to_dict(), where
     elif hasattr(a, "__dataclass_fields__"):
         assert type(a) is type(b), where
         for field in fields(a):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.ground import HEIGHT_STEP, height_above_ground
+from wavelet_gis.model.attributes.ground import HEIGHT_STEP, height_above_ground
 
 
 def slope_with_trees(rng, n=3000, offset=0.0):

@@ -21,7 +21,7 @@ from wavelet_gis.model.terrain import terrain_of_dem
 from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.vertex_raster import label_band, value_bands
 from wavelet_gis.products.vertex_tables import energy_columns
-from wavelet_gis.workflows.classify import (
+from wavelet_gis.workflows.learning.classify import (
     NOT_KNOWN,
     Validation,
     cluster_summary,
@@ -30,7 +30,11 @@ from wavelet_gis.workflows.classify import (
     spatial_folds,
     validate_classes,
 )
-from wavelet_gis.workflows.labels import cloud_with_classes, labels_from_las, labels_from_layer
+from wavelet_gis.workflows.learning.labels import (
+    cloud_with_classes,
+    labels_from_las,
+    labels_from_layer,
+)
 from wavelet_gis.workflows.open import open_terrain
 
 pytest.importorskip("sklearn")

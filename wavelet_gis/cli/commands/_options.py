@@ -54,6 +54,11 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "of points",
     )
     group.add_argument(
+        "--class-channels",
+        action="store_true",
+        help="lift classes, return numbers and other categories as one channel of 0 and 1 each",
+    )
+    group.add_argument(
         "--classes", type=_classes, metavar="N,N", help="only points of these classes"
     )
     group.add_argument(
@@ -115,6 +120,7 @@ def open_given(arguments: argparse.Namespace) -> Terrain:
         attributes=arguments.attributes,
         classes=arguments.classes,
         carry=arguments.carry,
+        class_channels=arguments.class_channels,
         crs=arguments.crs,
         vertical_unit=arguments.vertical_unit,
         keep_noise=arguments.keep_noise,

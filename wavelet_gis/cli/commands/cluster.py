@@ -10,7 +10,7 @@ from wavelet_gis.cli.console import Console
 
 if TYPE_CHECKING:
     from wavelet_gis.workflows.analyse import Analysis
-    from wavelet_gis.workflows.cluster import Labelled
+    from wavelet_gis.workflows.learning.cluster import Labelled
 
 ORDER = 80
 HELP = "Cluster the vertices by their scales, or learn classes and predict the rest."
@@ -62,7 +62,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="count class N as M; may be given several times",
     )
     learning.add_argument(
-        "--validate", action="store_true", help="tell how well blocks of the map are predicted"
+        "--validate",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="tell how well blocks of the map are predicted from the others (default)",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of samples and starts")
     parser.add_argument(
@@ -77,7 +80,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    from wavelet_gis.workflows.cluster import check_label_output
+    from wavelet_gis.workflows.learning.cluster import check_label_output
     from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.save import save
 
@@ -97,7 +100,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
 
 
 def _clusters(analysis: Analysis, arguments: argparse.Namespace, console: Console) -> Labelled:
-    from wavelet_gis.workflows.cluster import cluster
+    from wavelet_gis.workflows.learning.cluster import cluster
 
     with console.progress("clustering") as progress:
         return cluster(
@@ -111,9 +114,8 @@ def _clusters(analysis: Analysis, arguments: argparse.Namespace, console: Consol
 
 
 def _classes(analysis: Analysis, arguments: argparse.Namespace, console: Console) -> Labelled:
-    from wavelet_gis.workflows.classify import merge_labels
-    from wavelet_gis.workflows.cluster import classify
-    from wavelet_gis.workflows.labels import labels_from_las, labels_from_layer
+    from wavelet_gis.workflows.learning.cluster import classify
+    from wavelet_gis.workflows.learning.labels import labels_from_las, labels_from_layer
 
     if arguments.learn == "las":
         given = labels_from_las(analysis.geo, arguments.unlabelled)
@@ -122,7 +124,10 @@ def _classes(analysis: Analysis, arguments: argparse.Namespace, console: Console
     with console.progress("learning") as progress:
         return classify(
             analysis,
-            merge_labels(given, arguments.merge),
+            given,
+            is_las=arguments.learn == "las",
+            unlabelled=arguments.unlabelled,
+            merges=arguments.merge,
             validate=arguments.validate,
             seed=arguments.seed,
             progress=progress,
@@ -132,11 +137,10 @@ def _classes(analysis: Analysis, arguments: argparse.Namespace, console: Console
 def _tell(labelled: Labelled, figures: dict[str, Any], output: str, console: Console) -> None:
     validation = labelled.validation
     if validation is not None:
-        console.say(f"accuracy in blocks of the map left out: {validation.accuracy:.1%}")
         console.table(
-            ("class", "F1", *(f"as {c}" for c in validation.classes)),
+            ("class", *(f"as {c}" for c in validation.classes)),
             [
-                (c, validation.f1[c], *map(int, row))
+                (c, *map(int, row))
                 for c, row in zip(validation.classes, validation.confusion, strict=True)
             ],
         )

@@ -35,6 +35,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="M",
         help="the least with no input vertex further off, vertically; in the unit of z",
     )
+    parser.add_argument(
+        "--categories",
+        choices=("nearest", "number"),
+        default="nearest",
+        help="classes and other categories are those of the nearest input vertex (default), or, "
+        "as in the paper, the numbers that the filters made of them",
+    )
     add_surface_arguments(parser)
     add_overwrite_argument(parser)
 
@@ -55,7 +62,13 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         vertices=arguments.vertices,
         max_error=arguments.max_error,
     )
-    cells = save(surface, arguments.output, overwrite=arguments.overwrite, **options)
+    cells = save(
+        surface,
+        arguments.output,
+        overwrite=arguments.overwrite,
+        categories=arguments.categories,
+        **options,
+    )
     figures = {"level": surface.level, **surface.figures(), **cells}
     shape = f", {cells['n_rows']} x {cells['n_columns']} cells" if cells else ""
     console.say(

@@ -59,8 +59,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         const=True,  # to be estimated
         default=False,
         metavar="SIGMA",
-        help="take out white noise of this standard deviation, in the unit of z; estimated where "
+        help="take out noise of this standard deviation, in the unit of z; estimated where "
         "it is not given. Before any gain",
+    )
+    noise.add_argument(
+        "--noise-range",
+        type=_range,
+        default=0.0,
+        metavar="LENGTH|auto",
+        help="distance at which the correlation of the noise has fallen to 1/e, in metres where "
+        "the CRS tells its unit; auto estimates it. By default the noise is white",
+    )
+    noise.add_argument(
+        "--local-noise", action="store_true", help="the noise differs by place: measure it there"
+    )
+    noise.add_argument(
+        "--outliers", action="store_true", help="replace values that stand out of their ring first"
     )
     noise.add_argument(
         "--pyramids",
@@ -69,7 +83,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=8,
         metavar="N",
         help="average over so many pyramids in random order (default 8); 0: threshold the "
-        "details of this pyramid alone, which is quick and leaves traces of its triangles",
+        "details of a single one, which is quick and leaves traces of its triangles",
     )
     noise.add_argument(
         "--channel",
@@ -107,6 +121,9 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             denoise=arguments.denoise,
             n_pyramids=arguments.n_pyramids,
             channels=tuple(arguments.channels or ("z",)),
+            noise_range=arguments.noise_range,
+            local_noise=arguments.local_noise,
+            outliers=arguments.outliers,
             progress=progress,
         )
     save(filtered, arguments.output, overwrite=arguments.overwrite)
@@ -140,6 +157,15 @@ def _metres(text: str) -> tuple[float, float]:
         return float(low or 0.0), float(high or "inf")
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is not LO:HI, such as 5:50 or 10:") from None
+
+
+def _range(text: str) -> float | str:
+    if text == "auto":
+        return "estimate"
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no length, nor auto") from None
 
 
 def _sigma(text: str) -> float:

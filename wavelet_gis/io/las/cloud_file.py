@@ -28,8 +28,9 @@ from wavelet_gis.io.las.layout import (
     read_layout,
     records_of,
 )
+from wavelet_gis.model.attributes.categories import channel_category
+from wavelet_gis.model.attributes.ground import GROUND_CLASS, height_above_ground
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
-from wavelet_gis.model.ground import GROUND_CLASS, height_above_ground
 from wavelet_gis.notes import warn
 
 if TYPE_CHECKING:
@@ -514,13 +515,19 @@ def _record_of(cloud: PointCloud, layout: LasLayout) -> PackedPointRecord:
     """Return the point records, every field in its place."""
     header = _laspy_header("the stored LAS header", layout)
     record = _laspy().PackedPointRecord.zeros(cloud.n_points, header.point_format)
+    for attribute in cloud.attributes:
+        category = channel_category(attribute)
+        if category is not None:  # what is carried comes over it
+            dimension, value = category
+            record[dimension] = np.where(attribute.values != 0, value, record[dimension])
     for name, values in cloud.carried.items():
         if name in (record.array.dtype.names or ()) and name not in ("X", "Y", "Z"):
             record.array[name] = values
     for k, axis in enumerate("XYZ"):
         record.array[axis] = cloud.integers[:, k]
     for attribute in cloud.attributes:
-        if attribute.dimension != HEIGHT_ABOVE_GROUND or _has_dimension(record, attribute):
+        is_stored = attribute.dimension != HEIGHT_ABOVE_GROUND or _has_dimension(record, attribute)
+        if is_stored and channel_category(attribute) is None:
             _put(record, attribute)
     return record
 

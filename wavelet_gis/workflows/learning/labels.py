@@ -15,7 +15,7 @@ from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.classify import NOT_KNOWN
+from wavelet_gis.workflows.learning.classify import NOT_KNOWN, merge_labels
 
 __all__ = ["cloud_with_classes", "labels_from_las", "labels_from_layer"]
 
@@ -123,7 +123,12 @@ def labels_from_layer(
     return labels
 
 
-def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
+def cloud_with_classes(
+    geo: GeoPyramid,
+    labels: IntArray,
+    unlabelled: Sequence[int] | None = None,
+    merges: Sequence[tuple[int, int]] = (),
+) -> PointCloud:
     """Return the points that a pyramid was made from with other classes.
 
     Parameters
@@ -132,6 +137,11 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
         Of a point cloud.
     labels : (n_vertices,) int64
         Below 0: the class stays. Points that share x and y with a vertex get its class.
+    unlabelled : sequence of int, optional
+        Where the labels were learned from the points' own classes: those that count as not known.
+        Points of any other class keep it, also where they share x and y with a vertex.
+    merges : sequence of (from, to)
+        Classes that were counted as another, for the points that keep theirs.
 
     Raises
     ------
@@ -146,6 +156,10 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
     of_point = np.full(source.n_points, NOT_KNOWN, dtype=np.int64)
     of_point[source.vertex_rows()] = labels
     of_point[source.dropped] = labels[source.representative]
+    if unlabelled is not None:
+        own = _point_classes(cloud)[source.dropped]
+        is_known = ~np.isin(own, list(unlabelled))
+        of_point[source.dropped[is_known]] = merge_labels(own, merges)[is_known]
     changed = of_point >= 0
     if "raw_classification" in cloud.carried:
         stored = cloud.carried["raw_classification"].copy()
@@ -173,6 +187,17 @@ def cloud_with_classes(geo: GeoPyramid, labels: IntArray) -> PointCloud:
             attribute = replace(attribute, values=values)
         attributes.append(attribute)
     return replace(cloud, attributes=tuple(attributes))
+
+
+def _point_classes(cloud: PointCloud) -> IntArray:
+    """Return the class of every point, from wherever it is; unclassified if from nowhere."""
+    carried = _carried_classes(cloud)
+    if carried is not None:
+        return carried.astype(np.int64)
+    for attribute in cloud.attributes:
+        if attribute.dimension == "classification":
+            return attribute.values.astype(np.int64)
+    return np.ones(cloud.n_points, dtype=np.int64)
 
 
 def _carried_classes(cloud: PointCloud) -> NDArray[Any] | None:

@@ -5,10 +5,11 @@ Needs scikit-learn, which is imported when it is used. Arrays in, arrays out.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from wavelet_core.errors import MissingDependencyError, OptionError
 from wavelet_core.features.signature import Signature
 from wavelet_core.lifting.spacings import level_spacings
+from wavelet_core.progress import Progress, part_of, report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.vertex_tables import energy_columns
 
@@ -46,6 +48,15 @@ TRIED_COUNTS = tuple(range(1, 11))
 
 #: Labelled vertices that a class is learned from, at most.
 MAX_PER_CLASS = 8_000
+
+#: Bins of a feature.
+N_BINS = 255
+
+#: Trees that are grown, and those between two looks at whether to stop.
+N_TREES, N_TREES_AT_ONCE = 80, 8
+
+#: Vertices that are predicted between two looks at whether to stop.
+PREDICTED_AT_ONCE = 50_000
 
 #: Blocks in each direction by which validation is split; see `spatial_folds`.
 BLOCKS_PER_SIDE = 5
@@ -114,6 +125,15 @@ class Validation:
         return float(np.trace(self.confusion) / max(self.confusion.sum(), 1))
 
     @property
+    def recall(self) -> dict[int, float]:
+        """Share of each class that is found; 0 of a class that nothing has."""
+        right, there = np.diag(self.confusion), self.confusion.sum(axis=1)
+        return {
+            name: float(n / max(total, 1))
+            for name, n, total in zip(self.classes, right, there, strict=True)
+        }
+
+    @property
     def f1(self) -> dict[int, float]:
         """Harmonic mean of precision and recall, by class; 0 where nothing is right."""
         right = np.diag(self.confusion)
@@ -128,6 +148,7 @@ class Validation:
         return {
             "accuracy": self.accuracy,
             "f1": {str(name): value for name, value in self.f1.items()},
+            "recall": {str(name): value for name, value in self.recall.items()},
             "classes": list(self.classes),
             "confusion": self.confusion.tolist(),
         }
@@ -138,6 +159,7 @@ def cluster_vertices(
     count: int | None = None,
     method: Literal["kmeans", "mixture"] = "kmeans",
     seed: int = 0,
+    progress: Progress | None = None,
 ) -> Clusters:
     """Return clusters of vertices with alike signatures.
 
@@ -152,6 +174,8 @@ def cluster_vertices(
         in size and shape.
     seed : int
         Of the sample that is fitted and of the starts; the same seed gives the same clusters.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -181,12 +205,18 @@ def cluster_vertices(
     sample = _sample(n_vertices, MAX_FITTED, generator)
     fitted = columns[sample]
     explained: dict[int, float] = {}
-    with _few_threads():
+    with _few_threads(1):  # k-means and mixtures sum in the order of their threads
         if count is None:
-            explained = _explained(fitted, seed)
+            explained = _explained(fitted, seed, part_of(progress, 0.0, 0.7))
             count = _knee(explained)
+        report(progress, 0.7)
         model = _fitted_model(fitted, count, method, seed)
-        labels, confidence = _assigned(model, columns, method)
+        parts = [
+            _assigned(model, columns[rows], method)
+            for rows in _blocks(n_vertices, part_of(progress, 0.8, 1.0))
+        ]
+    labels, confidence = (np.concatenate(part) for part in zip(*parts, strict=True))
+    report(progress, 1.0)
     # Models number their clusters at will; energy gives an order that people can read.
     energy = [signature.values[labels == k].mean() if (labels == k).any() else -np.inf
               for k in range(count)]  # fmt: skip
@@ -235,7 +265,9 @@ def cluster_summary(
     return {"spacings": level_spacings(geo.pyramid)[1:].tolist(), "clusters": rows}
 
 
-def learn_classes(features: Signature, labels: IntArray, seed: int = 0) -> Classes:
+def learn_classes(
+    features: Signature, labels: IntArray, seed: int = 0, progress: Progress | None = None
+) -> Classes:
     """Return the class of every vertex, learned from those that have a label.
 
     Parameters
@@ -246,6 +278,8 @@ def learn_classes(features: Signature, labels: IntArray, seed: int = 0) -> Class
         Below 0: not known.
     seed : int
         Of the sample that is learned from.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -266,21 +300,31 @@ def learn_classes(features: Signature, labels: IntArray, seed: int = 0) -> Class
             f"the labels name {len(np.unique(labels[known]))} class; learning needs vertices of "
             "at least two."
         )
-    with _few_threads():
-        model = _fitted_trees(features.values, labels, known, seed)
-        probabilities = model.predict_proba(features.values)
+    with _few_threads(_half_of_the_cores()):
+        model = _fitted_trees(features.values, labels, known, seed, part_of(progress, 0.0, 0.6))
+        probabilities = np.concatenate(
+            [
+                model.predict_proba(features.values[rows])
+                for rows in _blocks(len(labels), part_of(progress, 0.6, 1.0))
+            ]
+        )
+    report(progress, 1.0)
     best = probabilities.argmax(axis=1)
-    return Classes(model.classes_[best].astype(np.int64), probabilities.max(axis=1))
+    return Classes(model.classes[best], probabilities.max(axis=1))
 
 
 def validate_classes(
-    features: Signature, labels: IntArray, folds: IntArray, seed: int = 0
+    features: Signature,
+    labels: IntArray,
+    folds: IntArray,
+    seed: int = 0,
+    progress: Progress | None = None,
 ) -> Validation:
     """Return how well each fold's classes are predicted from all the others.
 
     Parameters
     ----------
-    features, labels, seed
+    features, labels, seed, progress
         As for `learn_classes`.
     folds : (n_vertices,) int64
         From `spatial_folds`, so that what is predicted is not beside what was learned.
@@ -294,14 +338,22 @@ def validate_classes(
     known = labels >= 0
     classes = np.unique(labels[known])
     confusion = np.zeros((len(classes), len(classes)), dtype=np.int64)
-    with _few_threads():
-        for fold in np.unique(folds[known]):
+    with _few_threads(_half_of_the_cores()):
+        present = np.unique(folds[known])
+        for k, fold in enumerate(present):
+            part = part_of(progress, k / len(present), (k + 1) / len(present))
+            report(part, 0.0)
             train = np.flatnonzero(known & (folds != fold))
             test = np.flatnonzero(known & (folds == fold))
             if len(np.unique(labels[train])) < 2:
                 continue
-            model = _fitted_trees(features.values, labels, train, seed)
-            predicted = model.predict(features.values[test])
+            model = _fitted_trees(features.values, labels, train, seed, part_of(part, 0.0, 0.7))
+            predicted = np.concatenate(
+                [
+                    model.predict(features.values[test[rows]])
+                    for rows in _blocks(len(test), part_of(part, 0.7, 1.0))
+                ]
+            )
             rows = np.searchsorted(classes, labels[test])
             np.add.at(confusion, (rows, np.searchsorted(classes, predicted)), 1)
     if confusion.sum() == 0:
@@ -354,15 +406,25 @@ def _sample(n_items: int, n_wanted: int, generator: np.random.Generator) -> IntA
     return np.sort(generator.choice(n_items, n_wanted, replace=False))
 
 
-def _explained(columns: FloatArray, seed: int) -> dict[int, float]:
+def _blocks(n_items: int, progress: Progress | None) -> Iterator[slice]:
+    """Yield the rows of each block that is predicted at once; ``progress`` may stop it."""
+    for first in range(0, max(n_items, 1), PREDICTED_AT_ONCE):
+        report(progress, first / max(n_items, 1))
+        yield slice(first, min(first + PREDICTED_AT_ONCE, n_items))
+
+
+def _explained(
+    columns: FloatArray, seed: int, progress: Progress | None = None
+) -> dict[int, float]:
     total = float(((columns - columns.mean(axis=0)) ** 2).sum())
     if total <= 0:
         return {1: 1.0}
     counts = [count for count in TRIED_COUNTS if count <= len(columns)]
-    return {
-        count: 1 - float(_fitted_model(columns, count, "kmeans", seed).inertia_) / total
-        for count in counts
-    }
+    shares = {}
+    for k, count in enumerate(counts):
+        report(progress, k / len(counts))
+        shares[count] = 1 - float(_fitted_model(columns, count, "kmeans", seed).inertia_) / total
+    return shares
 
 
 def _knee(explained: dict[int, float]) -> int:
@@ -397,7 +459,14 @@ def _assigned(model: Any, columns: FloatArray, method: str) -> tuple[IntArray, F
     return labels, 1 - nearest[:, 0] / np.maximum(nearest[:, 1], 1e-300)
 
 
-def _fitted_trees(values: NDArray[np.float32], labels: IntArray, known: IntArray, seed: int) -> Any:
+def _fitted_trees(
+    values: NDArray[np.float32],
+    labels: IntArray,
+    known: IntArray,
+    seed: int,
+    progress: Progress | None = None,
+) -> _Trees:
+    """Return boosted trees; grown a few at a time, so that ``progress`` may stop them."""
     from sklearn.ensemble import HistGradientBoostingClassifier
 
     generator = np.random.default_rng(seed)
@@ -406,25 +475,71 @@ def _fitted_trees(values: NDArray[np.float32], labels: IntArray, known: IntArray
         of_class = known[labels[known] == name]
         chosen.append(of_class[_sample(len(of_class), MAX_PER_CLASS, generator)])
     rows = np.sort(np.concatenate(chosen))
+    levels = np.linspace(0, 1, N_BINS + 1)[1:-1]
+    thresholds = [np.unique(column) for column in np.quantile(values[rows], levels, axis=0).T]
+    binned = _binned(values[rows], thresholds)
+    # What "balanced" stands for: trees that are grown on do not take the word.
+    classes, numbers = np.unique(labels[rows], return_inverse=True)
+    weights = dict(enumerate((len(rows) / (len(classes) * np.bincount(numbers))).tolist()))
     model = HistGradientBoostingClassifier(
-        max_iter=80, class_weight="balanced", early_stopping=False, random_state=seed
+        max_iter=N_TREES_AT_ONCE,
+        class_weight=weights,
+        early_stopping=False,
+        random_state=seed,
+        warm_start=True,
     )
-    return model.fit(values[rows], labels[rows])
+    for n_trees in range(N_TREES_AT_ONCE, N_TREES + 1, N_TREES_AT_ONCE):
+        report(progress, (n_trees - N_TREES_AT_ONCE) / N_TREES)
+        model.set_params(max_iter=n_trees)
+        model.fit(binned, numbers)
+    return _Trees(classes, thresholds, model)
+
+
+class _Trees(NamedTuple):
+    """Boosted trees over features that are binned first.
+
+    scikit-learn takes weighted quantiles, one after the other and anew at each call: 12 s for
+    forty features. It leaves numbers of few values as they are.
+    """
+
+    classes: IntArray
+    thresholds: list[NDArray[np.float32]]
+    model: Any
+
+    def predict(self, values: NDArray[np.float32]) -> IntArray:
+        predicted = self.model.predict(_binned(values, self.thresholds)).astype(np.int64)
+        return self.classes[predicted]
+
+    def predict_proba(self, values: NDArray[np.float32]) -> FloatArray:
+        probabilities: FloatArray = self.model.predict_proba(_binned(values, self.thresholds))
+        return probabilities
+
+
+def _binned(
+    values: NDArray[np.float32], thresholds: list[NDArray[np.float32]]
+) -> NDArray[np.float32]:
+    bins = [np.searchsorted(t, column) for t, column in zip(thresholds, values.T, strict=True)]
+    return np.column_stack(bins).astype(np.float32)
 
 
 @contextmanager
-def _few_threads() -> Iterator[None]:
+def _few_threads(at_most: int) -> Iterator[None]:
     """Keep scikit-learn's threads from waiting for each other.
 
     With as many OpenMP threads as cores, boosting took over fifty times as long on a machine
-    with other work to do, since its threads spin while they wait.
+    with other work to do, since its threads spin while they wait. Only libraries that are loaded
+    already can be told.
     """
-    import os
-
+    import sklearn.cluster
+    import sklearn.ensemble  # noqa: F401
     from threadpoolctl import threadpool_limits
 
-    with threadpool_limits(limits=max((os.cpu_count() or 2) // 2, 1)):
+    with threadpool_limits(limits=at_most):
         yield
+
+
+def _half_of_the_cores() -> int:
+    return max((os.cpu_count() or 2) // 2, 1)
 
 
 def _require_sklearn() -> None:

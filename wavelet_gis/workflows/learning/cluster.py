@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from wavelet_core import Progress
 from wavelet_core.errors import OptionError
-from wavelet_core.features.signature import energy_signature, plain_features, scale_features
+from wavelet_core.features.signature import energy_signature
 from wavelet_gis.io.atomic import check_output
 from wavelet_gis.io.formats import (
     CLOUD_SUFFIXES,
@@ -21,19 +21,19 @@ from wavelet_gis.io.formats import (
     suffix_of,
 )
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.notes import Note
 from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.vertex_raster import Bands, label_band
 from wavelet_gis.progress import part_of
-from wavelet_gis.workflows.classify import (
+from wavelet_gis.workflows.learning.classify import (
     Validation,
     cluster_summary,
     cluster_vertices,
-    learn_classes,
-    spatial_folds,
-    validate_classes,
+    merge_labels,
 )
-from wavelet_gis.workflows.labels import cloud_with_classes
+from wavelet_gis.workflows.learning.labels import UNLABELLED, cloud_with_classes
+from wavelet_gis.workflows.learning.learn import learn
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 
 __all__ = ["Labelled", "check_label_output", "classify", "cluster"]
@@ -57,6 +57,12 @@ class Labelled:
         How the labels were found, as JSON-able values.
     validation : Validation or None
         Of classes, where it was asked for.
+    notes : tuple of Note
+        What is to be said of classes: what they were not learned from, and how good they are.
+    unlabelled : tuple of int, or None
+        Where classes were learned from those of the points: which of these counted as not known.
+    merges : tuple of (from, to)
+        Classes that were counted as another.
     """
 
     geo: GeoPyramid
@@ -65,6 +71,9 @@ class Labelled:
     name: Literal["cluster", "class"]
     found: dict[str, Any]
     validation: Validation | None = None
+    notes: tuple[Note, ...] = ()
+    unlabelled: tuple[int, ...] | None = None
+    merges: tuple[tuple[int, int], ...] = ()
 
     def summary(self) -> dict[str, Any]:
         """Return size and spectrum of every label; see `cluster_summary`."""
@@ -89,7 +98,8 @@ class Labelled:
         if suffix in CLOUD_SUFFIXES:
             from wavelet_gis.io.las import write_cloud
 
-            write_cloud(path, cloud_with_classes(self.geo, self.labels))
+            cloud = cloud_with_classes(self.geo, self.labels, self.unlabelled, self.merges)
+            write_cloud(path, cloud)
         elif suffix in RASTER_SUFFIXES:
             from wavelet_gis.products.vertex_raster import write_bands
 
@@ -156,7 +166,7 @@ def cluster(
     count : int, optional
         Number of clusters; by default found from the data.
     method : {"kmeans", "mixture"}
-        See `wavelet_gis.workflows.classify.cluster_vertices`.
+        See `wavelet_gis.workflows.learning.classify.cluster_vertices`.
     channels : sequence of str
         Channels whose scales count; by default the geometry.
     seed : int
@@ -171,7 +181,7 @@ def cluster(
     """
     geo = pyramid_of(data)
     signature = energy_signature(geo.pyramid, tuple(channels), part_of(progress, 0.0, 0.9))
-    clusters = cluster_vertices(signature, count, method, seed)
+    clusters = cluster_vertices(signature, count, method, seed, part_of(progress, 0.9, 1.0))
     found = {
         "method": method,
         "n_clusters": clusters.n_clusters,
@@ -184,7 +194,10 @@ def classify(
     data: HoldsPyramid | GeoPyramid,
     labels: NDArray[np.int64],
     *,
-    validate: bool = False,
+    is_las: bool = False,
+    unlabelled: Sequence[int] = UNLABELLED,
+    merges: Sequence[tuple[int, int]] = (),
+    validate: bool = True,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Labelled:
@@ -195,7 +208,16 @@ def classify(
     data : Analysis, Filtered or GeoPyramid
         The pyramid.
     labels : (n_vertices,) int64
-        Below 0: not known; see `wavelet_gis.workflows.labels`. A label that is known stays.
+        Below 0: not known; see `wavelet_gis.workflows.learning.labels`. A label that is known
+        stays.
+    is_las : bool
+        Whether the labels are the classes of the points themselves, from `labels_from_las`: what
+        holds them too, such as the lifted class, is then not learned from, and points that have
+        a class keep it.
+    unlabelled : sequence of int
+        Classes of the points that counted as not known there.
+    merges : sequence of (from, to)
+        Classes to be counted as another.
     validate : bool
         Whether blocks of the map are predicted from the others, to tell how well that goes.
     seed : int
@@ -203,25 +225,28 @@ def classify(
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
+    Returns
+    -------
+    Labelled
+        Without a validation where the labels are in too few places for one.
+
     Raises
     ------
     OptionError
         Fewer than two classes among the labels.
     """
     geo = pyramid_of(data)
-    scales = scale_features(geo.pyramid, part_of(progress, 0.0, 0.5))
-    features = scales.joined_to(plain_features(geo.pyramid))
-    validation = None
-    if validate:
-        plan = geo.pyramid.synthesise().vertices[:, :2]
-        validation = validate_classes(features, labels, spatial_folds(plan), seed)
-    classes = learn_classes(features, labels, seed)
-    is_known = labels >= 0
+    given = merge_labels(labels, merges)
+    learned = learn(geo, given, is_las=is_las, validate=validate, seed=seed, progress=progress)
+    found = {"n_labelled": learned.n_labelled, "left_out": list(learned.left_out)}
     return Labelled(
         geo,
-        np.where(is_known, labels, classes.predicted),
-        np.where(is_known, 1.0, classes.confidence),
+        learned.labels,
+        learned.confidence,
         "class",
-        {"n_labelled": int(np.count_nonzero(is_known))},
-        validation,
+        found,
+        learned.validation,
+        learned.notes,
+        tuple(unlabelled) if is_las else None,
+        tuple(merges),
     )

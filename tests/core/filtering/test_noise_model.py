@@ -1,0 +1,180 @@
+"""Noise that is not white and the same everywhere: found, said and taken out."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from wavelet_core import Cancelled, OptionError, TriangleMesh, denoise
+from wavelet_core.filtering.noise import estimate_noise
+from wavelet_core.filtering.noise_model import (
+    correlated_noise,
+    noise_of,
+    rounding_step,
+    without_outliers,
+)
+
+N = 100
+X, Y = np.meshgrid(np.arange(float(N)), np.arange(float(N)))
+HILLS = 6 * np.sin(X / 14) * np.cos(Y / 17) + 2.0 * (X + 0.3 * Y > 70)
+
+
+def mesh_of(elevation):
+    rows, columns = elevation.shape
+    x, y = np.arange(float(columns)), np.arange(float(rows))
+    return TriangleMesh.from_grid(elevation, x=x, y=y)
+
+
+def rmse(mesh, truth):
+    return float(np.sqrt(np.mean((mesh.vertices[:, 2] - truth.ravel()) ** 2)))
+
+
+def best_gaussian(noisy, truth):
+    widths = np.linspace(0.3, 5, 24)
+    smooth = (ndimage.gaussian_filter(noisy, w, mode="nearest") for w in widths)
+    return min(float(np.sqrt(np.mean((s - truth) ** 2))) for s in smooth)
+
+
+def blurred_noise(sigma, width=1.5, seed=0):
+    noise = ndimage.gaussian_filter(
+        np.random.default_rng(seed).normal(size=HILLS.shape), width, mode="wrap"
+    )
+    return sigma * noise / noise.std()
+
+
+@pytest.mark.parametrize("noise_range", [3.0, "estimate"])
+def test_correlated_noise_goes_as_far_as_with_the_best_gaussian(noise_range):
+    # Taken for white, or level by level, hardly any of it went.
+    noisy = HILLS + blurred_noise(0.3)
+    found = {}
+    sigma = 0.3 if noise_range == 3.0 else None
+    clean = denoise(mesh_of(noisy), sigma, n_pyramids=3, noise_range=noise_range, found=found)
+    assert rmse(clean, HILLS) < 1.0 * best_gaussian(noisy, HILLS)
+    assert rmse(clean, HILLS) < 0.65 * rmse(denoise(mesh_of(noisy), n_pyramids=1), HILLS)
+    assert 2.0 <= found["z"].reach <= 4.0
+    assert 0.2 < found["z"].sigma < 0.4
+    assert "correlated over" in found["z"].describe()
+
+
+def test_white_noise_is_found_to_be_white():
+    noisy = mesh_of(HILLS + np.random.default_rng(1).normal(0, 0.3, HILLS.shape))
+    noise, values = noise_of(
+        noisy, noisy.vertices[:, 2], noise_range="estimate", local_noise=True, outliers=True
+    )
+    assert noise.is_plain
+    assert noise.n_outliers == 0
+    assert noise.sigma == pytest.approx(0.3, rel=0.1)
+    np.testing.assert_array_equal(values, noisy.vertices[:, 2])
+
+
+def test_noise_that_differs_by_place_is_measured_there():
+    local = np.where(X < 50, 0.1, 0.6)
+    noisy = HILLS + local * np.random.default_rng(0).normal(size=HILLS.shape)
+    found = {}
+    clean = denoise(mesh_of(noisy), n_pyramids=3, local_noise=True, found=found)
+    measured = (found["z"].relative * found["z"].sigma).reshape(HILLS.shape)
+    assert np.median(measured[:, :40]) == pytest.approx(0.1, rel=0.2)
+    assert np.median(measured[:, 60:]) == pytest.approx(0.6, rel=0.2)
+    plain = denoise(mesh_of(noisy), n_pyramids=3)
+    assert rmse(clean, HILLS) < 0.7 * rmse(plain, HILLS)
+    assert rmse(clean, HILLS) < best_gaussian(noisy, HILLS)
+    assert "by place" in found["z"].describe()
+
+
+def test_outliers_are_found_counted_and_replaced():
+    rng = np.random.default_rng(2)
+    noisy = HILLS + rng.normal(0, 0.1, HILLS.shape)
+    off = rng.random(HILLS.shape) < 0.01
+    noisy[50, 50:52], off[50, 50:52] = 40.0, True  # two side by side
+    spiked = noisy + off * rng.choice([-1, 1], HILLS.shape) * rng.uniform(5, 20, HILLS.shape)
+    found = {}
+    clean = denoise(mesh_of(spiked), 0.1, n_pyramids=3, outliers=True, found=found)
+    np.testing.assert_array_equal(found["z"].outliers, np.flatnonzero(off))
+    assert f"{off.sum()} outliers replaced" in found["z"].describe()
+    assert rmse(clean, HILLS) < 0.06
+    kept = denoise(mesh_of(spiked), 0.1, n_pyramids=1)
+    assert rmse(kept, HILLS) > 5 * rmse(clean, HILLS)
+
+
+def test_banks_crests_and_summits_are_no_outliers():
+    cone = 30 - np.hypot(X - 50.3, Y - 49.6)
+    roof = -np.abs(X - 40.0) * 2
+    for surface in (HILLS, cone, roof, 15.0 * (X > 50), 15.0 * ((X > 50) & (Y > 50))):
+        ids, values = without_outliers(mesh_of(surface), surface.ravel())
+        assert len(ids) == 0
+        np.testing.assert_array_equal(values, surface.ravel())
+
+
+def test_values_rounded_to_a_step_have_at_least_its_noise():
+    # The estimate of the finest details is 0 where neighbours are alike.
+    gentle = 20 * np.sin(X / 60) * np.cos(Y / 70)
+    metres = mesh_of(np.round(gentle))
+    assert estimate_noise(metres) < 0.05
+    found = {}
+    clean = denoise(metres, n_pyramids=2, found=found)
+    assert found["z"].sigma == pytest.approx(1 / np.sqrt(12))
+    assert "values rounded to 1" in found["z"].describe()
+    assert rmse(clean, gentle) < 0.85 * rmse(metres, gentle)
+
+
+@pytest.mark.parametrize(
+    ("values", "step"),
+    [
+        (np.round(HILLS), 1.0),
+        (np.round(HILLS * 8) / 8 + 0.03, 0.125),
+        (np.round(HILLS) * 0.3048, 0.3048),
+        (HILLS, 0.0),
+        (np.zeros_like(HILLS), 0.0),
+        (np.where(X > 50, 1.0, np.pi), 0.0),
+    ],
+)
+def test_the_step_of_rounded_values(values, step):
+    assert rounding_step(values.ravel()) == pytest.approx(step)
+
+
+def test_correlated_noise_is_what_it_says():
+    plan = np.column_stack([X.ravel(), Y.ravel()])
+    columns = correlated_noise(plan, 4.0, 6, np.random.default_rng(0))
+    assert columns.std(axis=0) == pytest.approx(1.0)
+    fields = columns.T.reshape(6, N, N)
+    at_range = np.mean(fields[:, :, 4:] * fields[:, :, :-4])
+    assert at_range == pytest.approx(np.exp(-1), abs=0.08)
+    again = correlated_noise(plan, 4.0, 6, np.random.default_rng(0))
+    np.testing.assert_array_equal(columns, again)
+
+
+def test_kinds_of_noise_that_are_none_are_refused():
+    for wrong in (-1.0, np.nan, np.inf):
+        with pytest.raises(OptionError, match="noise_range"):
+            denoise(mesh_of(HILLS), noise_range=wrong)
+
+
+@pytest.mark.parametrize("n", [2, 3, 6])
+def test_tiny_meshes_pass_with_everything_on(n):
+    mesh = mesh_of(HILLS[:n, :n] + np.random.default_rng(0).normal(size=(n, n)))
+    for noise_range in (2.0, "estimate"):
+        clean = denoise(
+            mesh, n_pyramids=1, noise_range=noise_range, local_noise=True, outliers=True
+        )
+        assert np.isfinite(clean.vertices).all()
+
+
+def test_progress_is_told_often_and_in_order_and_any_call_may_cancel():
+    # The first call came after 7 s, and an answer to a cancel took up to 71 s, on large meshes.
+    seen = []
+    options = {"n_pyramids": 2, "noise_range": 2.0, "local_noise": True, "outliers": True}
+    mesh = mesh_of(HILLS[:40, :40])
+    denoise(mesh, 0.2, **options, progress=lambda f: seen.append(f))
+    assert len(seen) > 300
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    assert np.diff(seen).max() < 0.1
+    for stop in (0, 1, len(seen) // 3, len(seen) - 2):
+        calls = []
+
+        def answer(fraction, calls=calls, stop=stop):
+            calls.append(fraction)
+            return len(calls) <= stop
+
+        with pytest.raises(Cancelled, match="denoising was cancelled"):
+            denoise(mesh, 0.2, **options, progress=answer)
+        assert len(calls) == stop + 1

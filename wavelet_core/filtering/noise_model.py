@@ -1,0 +1,400 @@
+"""What is known of the noise of a channel: its strength by place, its reach, outliers, rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from scipy import ndimage
+
+from .._validate import FloatArray, IntArray
+from ..errors import OptionError
+from ..mesh.triangle_mesh import TriangleMesh
+from .noise import NORMAL_MAD, check_sigma, estimate_noise, noise_columns
+from .undecimated import UndecimatedBank, rings
+
+#: Least share of the values that rounding to a step must make alike for the step to be believed.
+LEAST_ALIKE = 0.5
+#: An outlier is so many standard deviations of the noise, plus so many times the relief of its
+#: ring, above the second highest of its neighbours or below the second lowest.
+OUTLIER_DEVIATIONS, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE = 5.0, 1.0, 4.0
+#: Looks for outliers: each sees those that others stood beside.
+OUTLIER_PASSES = 5
+#: Vertices of fewer neighbours, at corners, are none.
+LEAST_NEIGHBOURS = 4
+#: Rounds in which an outlier is filled from its neighbours.
+FILL_ROUNDS = 20
+#: Vertices of a block of the map that tell the noise there, the width of the blur over blocks,
+#: and what the blurred deviation of white noise varies by, times the root of that number.
+VERTICES_OF_BLOCK, BLUR_OF_BLOCKS, DEVIATION_OF_BLOCK = 25, 0.5, 0.9
+#: Correlation lengths that are tried, in mean distances of neighbours.
+TRIED_RANGES = (0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0)
+#: Scales by which they are told, and the share of the vertices, the flattest, that tell.
+N_TOLD, SHARE_TOLD = 3, 0.5
+
+RangeOption = float | Literal["estimate"]
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """The noise of one channel, as it was given or found.
+
+    Attributes
+    ----------
+    sigma : float
+        Standard deviation, in the channel's unit; the median one where it differs by place.
+    relative : ndarray, shape (n_vertices,), or None
+        Deviation at each vertex over sigma; None where it is the same everywhere.
+    reach : float
+        Distance at which the correlation of the noise has fallen to 1/e, in the unit of x and y;
+        0 for white noise.
+    outliers : ndarray of int64, shape (n_outliers,)
+        Vertices whose values are no part of the terrain; they are replaced before.
+    quantum : float
+        Step to which the values were rounded; 0 where none was found.
+    plan : ndarray, shape (n_vertices, 2), or None
+        Where the noise is, if it is correlated.
+    """
+
+    sigma: float
+    relative: FloatArray | None = None
+    reach: float = 0.0
+    outliers: IntArray | None = None
+    quantum: float = 0.0
+    plan: FloatArray | None = None
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is white and the same everywhere."""
+        return self.relative is None and self.plan is None
+
+    @property
+    def n_outliers(self) -> int:
+        """How many outliers there are."""
+        return 0 if self.outliers is None else len(self.outliers)
+
+    def columns(self, n_vertices: int, seed: int) -> FloatArray:
+        """Return columns of noise of this kind with sigma 1, ``(n_vertices, k)``."""
+        white = noise_columns(n_vertices, seed)
+        if self.is_plain:
+            return white
+        return self._shaped(white.shape, np.random.default_rng(seed + 1), white)
+
+    def probes(self, generator: np.random.Generator, shape: tuple[int, int]) -> FloatArray:
+        """Return columns with the covariance of this noise, sigma being 1, to probe a filter."""
+        signs = generator.choice([-1.0, 1.0], size=shape)
+        return signs if self.is_plain else self._shaped(shape, generator, signs)
+
+    def describe(self) -> str:
+        """Return what was given or found, in words.
+
+        Examples
+        --------
+        >>> Noise(0.25, reach=3.0, outliers=np.arange(4), quantum=1.0).describe()
+        '0.25, correlated over 3, values rounded to 1, 4 outliers replaced'
+        """
+        words = [f"{self.sigma:.4g}"]
+        if self.relative is not None:
+            low, high = np.quantile(self.relative, [0.05, 0.95]) * self.sigma
+            words.append(f"from {low:.3g} to {high:.3g} by place")
+        if self.reach > 0:
+            words.append(f"correlated over {self.reach:.3g}")
+        if self.quantum > 0:
+            words.append(f"values rounded to {self.quantum:.6g}")
+        if self.outliers is not None:
+            one = self.n_outliers == 1
+            words.append(f"{self.n_outliers:,} outlier{'' if one else 's'} replaced")
+        return ", ".join(words)
+
+    def _shaped(
+        self, shape: tuple[int, int], generator: np.random.Generator, white: FloatArray
+    ) -> FloatArray:
+        columns = white
+        if self.plan is not None and self.reach > 0:
+            columns = correlated_noise(self.plan, self.reach, shape[1], generator)
+        return columns if self.relative is None else columns * self.relative[:, None]
+
+
+def noise_of(
+    mesh: TriangleMesh,
+    values: FloatArray,
+    sigma: float | None = None,
+    *,
+    noise_range: RangeOption = 0.0,
+    local_noise: bool = False,
+    outliers: bool = False,
+    seed: int = 0,
+    tick: Callable[[], None] = lambda: None,
+) -> tuple[Noise, FloatArray]:
+    """Return the noise of a column, and the column with its outliers replaced.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    values : ndarray, shape (n_vertices,)
+    sigma : float, optional
+        Standard deviation of the noise; by default estimated, and no less than what rounding to
+        the step of the values leaves, step / sqrt(12).
+    noise_range : float or "estimate"
+        Distance at which the correlation of the noise has fallen to 1/e; 0 for white noise.
+    local_noise : bool
+        Whether the deviation differs by place and is to be found there.
+    outliers : bool
+        Whether to look for outliers.
+    seed : int
+    tick : callable
+        Called now and then; it may raise, to stop.
+
+    Raises
+    ------
+    OptionError
+        A negative sigma or range.
+    """
+    check_sigma(sigma)
+    if noise_range != "estimate" and not (np.isfinite(noise_range) and noise_range >= 0):
+        raise OptionError(
+            "{0} is {given}; give a distance of 0 or more, or 'estimate'.",
+            "noise_range",
+            given=repr(noise_range),
+        )
+    quantum = 0.0
+    if sigma is None:
+        quantum = rounding_step(values)
+    found = None
+    if outliers:
+        found, values = without_outliers(mesh, values, sigma, quantum)
+        tick()
+    noise = Noise(
+        _floored(estimate_noise(mesh, values), quantum) if sigma is None else float(sigma),
+        outliers=found,
+        quantum=quantum,
+    )
+    if (noise_range == 0.0 and not local_noise) or not len(mesh.faces) or np.ptp(values) == 0:
+        return noise, values
+    bank = UndecimatedBank.from_mesh(
+        mesh, N_TOLD + 1, noise_columns(mesh.n_vertices, seed)[:, :4], tick=tick
+    )
+    plan = mesh.vertices[:, :2] - mesh.vertices[:, :2].min(axis=0)
+    if noise_range == "estimate":
+        noise_range = _told_range(bank, plan, values, seed)
+    if noise_range > 0:
+        noise = replace(noise, reach=float(noise_range), plan=plan)
+        if sigma is None:
+            alike = noise.columns(mesh.n_vertices, seed)[:, 0]
+            ratios = _told_deviations(bank, values) / _told_deviations(bank, alike)
+            noise = replace(noise, sigma=_floored(float(np.median(ratios)), quantum))
+    if local_noise:
+        local = _map_of_noise(bank, plan, values, noise, seed)
+        if local is not None:
+            typical = float(np.median(local))
+            noise = replace(
+                noise,
+                sigma=_floored(typical, quantum) if sigma is None else noise.sigma,
+                relative=local / typical,
+            )
+    return noise, values
+
+
+def rounding_step(values: FloatArray) -> float:
+    """Return the step to which values were rounded; 0 where they were not, or finely.
+
+    Examples
+    --------
+    >>> x = np.linspace(0, 50, 2000)
+    >>> rounding_step(np.round(x * 2) / 2 + 0.1), rounding_step(x)
+    (0.5, 0.0)
+    """
+    levels = np.unique(np.round(values, 9))
+    if len(levels) < 3 or len(levels) > LEAST_ALIKE * len(values):
+        return 0.0
+    steps = np.diff(levels)
+    step = float(np.median(steps[steps < 1.5 * steps.min()]))
+    whole = np.diff(levels) / step
+    # Steps of a unit that was converted are whole to the digits of the conversion only.
+    return step if np.abs(whole - np.rint(whole)).max() < 1e-3 * max(whole.max(), 1.0) else 0.0
+
+
+def without_outliers(
+    mesh: TriangleMesh, values: FloatArray, sigma: float | None = None, quantum: float = 0.0
+) -> tuple[IntArray, FloatArray]:
+    """Return the vertices that stand out of their rings, and the values with those filled.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    values : ndarray, shape (n_vertices,)
+    sigma : float, optional
+        Standard deviation of the noise; by default estimated.
+    quantum : float
+        Step to which the values were rounded.
+
+    Notes
+    -----
+    An outlier is above the second highest of its neighbours, or below the second lowest, by more
+    than 5 sigma and the relief of the ring between those two; at an outline, where all neighbours
+    may lie downhill, above the highest by four times the relief. So a bank, a crest or a summit is
+    none, nor is one of two outliers side by side a reason to keep the other.
+    """
+    n = mesh.n_vertices
+    if n == 0 or not len(mesh.faces):
+        return np.empty(0, np.int64), values
+    row, column, _ = rings(mesh)
+    keeps = row != column
+    row, column = row[keeps], column[keeps]
+    deviation = _floored(estimate_noise(mesh, values), quantum) if sigma is None else sigma
+    # At an outline all neighbours may lie downhill.
+    is_inside = np.bincount(row, minlength=n) == np.bincount(mesh.faces.ravel(), minlength=n)
+    relief_counts = np.where(is_inside, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE)
+    rank = np.where(is_inside, 2, 1)
+    is_out = np.zeros(n, dtype=bool)
+    for _ in range(OUTLIER_PASSES):
+        good = ~is_out[column]
+        at = row[good], values[column[good]]
+        highest, lowest = _high(*at, rank, n), -_high(at[0], -at[1], rank, n)
+        known = np.isfinite(highest) & np.isfinite(lowest)
+        relief = np.where(known, np.maximum(highest - lowest, 0.0), np.inf)
+        excess = np.maximum(values - highest, lowest - values)
+        least = OUTLIER_DEVIATIONS * deviation + relief_counts * relief
+        new = known & ~is_out & (excess > least)
+        if not new.any():
+            break
+        is_out |= new
+    found = np.flatnonzero(is_out)
+    return found, _filled(row, column, values, is_out) if len(found) else values
+
+
+def correlated_noise(
+    plan: FloatArray, reach: float, n_columns: int, generator: np.random.Generator
+) -> FloatArray:
+    """Return columns of noise of deviation 1 whose correlation has fallen to 1/e at ``reach``.
+
+    White noise on a grid in plan, blurred by a Gaussian and read off at the vertices: its
+    correlation falls as ``exp(-(distance / reach)^2)`` on any mesh.
+    """
+    width = reach / 2.0
+    extent = np.ptp(plan, axis=0)
+    cell = max(width / 1.5, float(np.sqrt(extent.prod() / (8.0 * len(plan)))), extent.max() / 3e4)
+    at = (plan - plan.min(axis=0)).T / cell
+    shape = tuple((np.ceil(extent / cell) + 2).astype(int))
+    columns = np.empty((len(plan), n_columns))
+    for k in range(n_columns):
+        field = ndimage.gaussian_filter(
+            generator.standard_normal(shape), width / cell, mode="reflect", truncate=4.0
+        )
+        columns[:, k] = ndimage.map_coordinates(field, at, order=1, mode="nearest")
+        columns[:, k] /= max(float(columns[:, k].std()), 1e-300)
+    return columns
+
+
+def _floored(sigma: float, quantum: float) -> float:
+    return max(sigma, quantum / np.sqrt(12.0))
+
+
+def _high(row: IntArray, values: FloatArray, rank: IntArray, n: int) -> FloatArray:
+    """Return the value of a rank, 1 the highest, of each row; minus infinity of too few."""
+    found = np.full(n, -np.inf)
+    order = np.lexsort((values, row))
+    counts = np.bincount(row, minlength=n)
+    last = np.cumsum(counts)
+    has = counts >= LEAST_NEIGHBOURS
+    found[has] = values[order][(last - rank)[has]]
+    return found
+
+
+def _filled(row: IntArray, column: IntArray, values: FloatArray, is_out: np.ndarray) -> FloatArray:
+    """Return values with the outliers at the mean of their neighbours, also through others."""
+    n, filled = len(values), values.copy()
+    here = is_out[row]
+    row, column = row[here], column[here]
+    is_known = ~is_out
+    for _ in range(FILL_ROUNDS):
+        weight = is_known[column].astype(np.float64)
+        count = np.bincount(row, weight, n)
+        total = np.bincount(row, weight * filled[column], n)
+        now = is_out & (count > 0)
+        filled[now] = total[now] / count[now]
+        is_known |= now
+    return filled
+
+
+def _told_deviations(bank: UndecimatedBank, column: FloatArray) -> FloatArray:
+    """Return the robust deviation of details of each scale, where the next scale is flattest.
+
+    The flattest places are also those where the noise happens to be weak; the noise that this is
+    compared with goes the same way.
+    """
+    details = [one.sum(axis=2)[:, 0] for one in bank.details((column - column.mean())[:, None])]
+    energy = bank.local_energy(details[-1] ** 2, 8)
+    flat = energy <= np.quantile(energy, SHARE_TOLD)
+    told = np.array([np.median(np.abs(one[flat])) / NORMAL_MAD for one in details[:N_TOLD]])
+    return np.maximum(told, 1e-300)
+
+
+def _told_range(bank: UndecimatedBank, plan: FloatArray, values: FloatArray, seed: int) -> float:
+    """Return the correlation length whose details fall off over the scales as those found do."""
+    told = _told_deviations(bank, values)
+    spacing = float(np.sqrt(np.ptp(plan, axis=0).prod() / max(len(plan), 1)))
+    generator = np.random.default_rng(seed)
+    misfits = []
+    for tried in TRIED_RANGES:
+        if tried == 0.0:
+            column = generator.standard_normal(len(plan))
+        else:
+            column = correlated_noise(plan, tried * spacing, 1, generator)[:, 0]
+        misfits.append(float(np.var(np.log(told / _told_deviations(bank, column)))))
+    return TRIED_RANGES[int(np.argmin(misfits))] * spacing
+
+
+def _map_of_noise(
+    bank: UndecimatedBank, plan: FloatArray, values: FloatArray, noise: Noise, seed: int
+) -> FloatArray | None:
+    """Return the deviation of the noise at each vertex; None where it is the same everywhere.
+
+    The finest details, smoothed out twice so that hills leave nothing in them, are compared by
+    their root mean square in blocks of the map, what is above three times the median counting as
+    that. What so few would vary by alone is taken off before the map is believed.
+    """
+    both = np.column_stack([values - values.mean(), noise.columns(len(values), seed)[:, :4]])
+    for _ in range(2):
+        both = both - bank.smoother @ both
+        bank.tick()
+    gain = np.sqrt(bank.local_energy(np.mean(both[:, 1:] ** 2, axis=1), 4))
+    size = np.abs(both[:, 0]) / np.maximum(gain, 1e-12 * max(float(gain.max()), 1e-300))
+    side = np.sqrt(max(float(np.ptp(plan, axis=0).prod()), 1e-300) * VERTICES_OF_BLOCK / len(plan))
+    shape = np.maximum(np.ceil(np.ptp(plan, axis=0) / side).astype(int), 1)
+    if shape.prod() < 4:
+        return None
+    cell = np.minimum((plan / side).astype(int), shape - 1)
+    block, n_blocks = cell[:, 0] * shape[1] + cell[:, 1], int(shape.prod())
+    medians, counts = _medians_of_blocks(block, size, n_blocks)
+    is_told = (counts >= VERTICES_OF_BLOCK / 4) & (medians > 0)
+    if is_told.sum() < 4:
+        return None
+    limit = 3.0 * medians[block] / NORMAL_MAD
+    squares = np.bincount(block, np.minimum(size, limit) ** 2, n_blocks) / np.maximum(counts, 1)
+    weight = is_told.reshape(shape).astype(np.float64)
+    logs = 0.5 * np.log(np.where(is_told, squares, 1.0)).reshape(shape)
+    centre = float(np.median(logs[weight > 0]))
+    smooth = ndimage.gaussian_filter((logs - centre) * weight, BLUR_OF_BLOCKS, mode="nearest")
+    smooth /= np.maximum(ndimage.gaussian_filter(weight, BLUR_OF_BLOCKS, mode="nearest"), 1e-12)
+    spread = float(np.var(smooth[weight > 0]))
+    by_chance = DEVIATION_OF_BLOCK**2 / VERTICES_OF_BLOCK
+    if spread <= 2 * by_chance:
+        return None
+    smooth *= np.sqrt(1.0 - by_chance / spread)
+    at = (plan / side - 0.5).T
+    logs_here = ndimage.map_coordinates(smooth, at, order=1, mode="nearest")
+    local: FloatArray = np.exp(centre + logs_here)
+    return local
+
+
+def _medians_of_blocks(
+    block: IntArray, values: FloatArray, n_blocks: int
+) -> tuple[FloatArray, IntArray]:
+    counts = np.bincount(block, minlength=n_blocks)
+    ordered = values[np.lexsort((values, block))]
+    first = np.cumsum(counts) - counts
+    middle = np.minimum(first + counts // 2, max(len(values) - 1, 0))
+    return np.where(counts > 0, ordered[middle], 0.0), counts

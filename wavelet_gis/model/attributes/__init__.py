@@ -1,0 +1,1 @@
+"""What the attributes of points mean: categories, heights above the ground."""
