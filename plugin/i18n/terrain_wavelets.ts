@@ -430,11 +430,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Accuracy: {:.1f} %</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Cell size of the raster</source>
     <translation type="unfinished"></translation>
   </message>
@@ -865,6 +860,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Distance at which the correlation of the noise has fallen to a third, in metres; empty for noise that is white.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Drop details that are larger on the ground, in metres.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -881,6 +881,11 @@
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Drop the details of finer levels.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Estimate the range of the noise</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -925,6 +930,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>From how details fall off over the scales.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Gain</source>
     <translation type="unfinished"></translation>
   </message>
@@ -960,6 +970,16 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Measure the noise at each place, as on slopes seen by a laser scanner.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Noise differs by place</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Noise removed from a pyramid, or chosen scales damped, boosted or isolated</source>
     <translation type="unfinished"></translation>
   </message>
@@ -975,12 +995,22 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Pyramids in random order, each denoised, whose average leaves no traces of triangles. 0 thresholds the details of this pyramid alone, which is quick.</source>
+    <source>Pyramids in random order, each denoised, whose average leaves no traces of triangles. 0 thresholds the details of a single one, which is quick.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Range of the noise</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Remove noise</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Replace outliers</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1010,12 +1040,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>What the details of a level are multiplied by: 0 drops them, 0.5 halves, 2 doubles. Levels that are not listed stay. Level 0 is the coarsest.</source>
+    <source>Such as that of a laser scanner.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>White noise, such as that of a laser scanner.</source>
+    <source>Values that stand out of their ring are replaced before all else.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>What the details of a level are multiplied by: 0 drops them, 0.5 halves, 2 doubles. Levels that are not listed stay. Level 0 is the coarsest.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
