@@ -22,7 +22,7 @@ from pyproj import CRS
 from scipy.ndimage import gaussian_filter
 
 from wavelet_gis.cli.main import main as terrain_wavelets
-from wavelet_gis.io.pyramid_file import read_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 from wavelet_gis.io.raster import read_dem, write_dem
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.products.rasterise import rasterise

@@ -199,12 +199,6 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         self._log_notes(request, notes)
         return results
 
-    def require_numba(self, n_vertices: int) -> None:
-        """Refuse more vertices than plain Python takes, with the remedy for this platform."""
-        refusal = dependencies.refusal_without_numba(n_vertices)
-        if refusal:
-            raise QgsProcessingException(refusal)
-
     def work(self, request: Request) -> Values:
         """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""
         raise AssertionError(f"{self.name()} does nothing")

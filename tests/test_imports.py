@@ -23,6 +23,7 @@ ROOMS = {
         "_table",
         "_validate",
         "_kernels",
+        "_arrays",
         "mesh",
         "partition",
         "lifting",
@@ -236,7 +237,12 @@ def test_every_room_has_its_place_in_the_order():
 
 
 #: Folders that hold one file for each row of a table, however many there are.
-OF_TABLES = {"plugin/algorithms", "wavelet_gis/cli/commands", "wavelet_core/_kernels"}
+OF_TABLES = {
+    "plugin/algorithms",
+    "wavelet_gis/cli/commands",
+    "wavelet_core/_kernels",
+    "wavelet_core/_arrays",
+}
 
 
 def test_no_room_is_crowded():

@@ -62,7 +62,6 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
 
         output = request.output_file("OUTPUT")
         terrain = self.terrain(request)
-        self.require_numba(terrain.mesh.n_vertices)
         request.say(
             tr("{} vertices, {} triangles").format(terrain.mesh.n_vertices, terrain.mesh.n_faces)
         )

@@ -236,9 +236,10 @@ class ClusterDetails(PyramidAlgorithm):
         path = request.output_file("SUMMARY")
         if path:
             from wavelet_gis.io.atomic import new_file
+            from wavelet_gis.io.read_back import write_text
 
             with new_file(path, overwrite=True) as scratch:
-                scratch.write_text(json.dumps(summary, indent=1), encoding="utf-8")
+                write_text(scratch, json.dumps(summary, indent=1))
             results["SUMMARY"] = path
         return results
 

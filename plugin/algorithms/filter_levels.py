@@ -257,8 +257,6 @@ class FilterLevels(PyramidAlgorithm):
 
         before = self.geo_pyramid(request)
         sigma = request.number("SIGMA_OF_NOISE")
-        if request.flag("DENOISE") and request.whole("PYRAMIDS"):
-            self.require_numba(before.pyramid.n_vertices(before.pyramid.n_levels))
         request.stage(tr("Filtering"))
         filtered = filter_pyramid(
             before,

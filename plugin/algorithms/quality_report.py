@@ -85,6 +85,7 @@ class QualityReport(PyramidAlgorithm):
     def work(self, request: Request) -> Values:
         """Measure, draw, write."""
         from wavelet_gis.io.atomic import new_file
+        from wavelet_gis.io.read_back import write_text
         from wavelet_gis.report.page import report_page
 
         geo = self.geo_pyramid(request)
@@ -100,6 +101,6 @@ class QualityReport(PyramidAlgorithm):
             if not path:
                 continue
             with new_file(path, overwrite=True) as scratch:
-                scratch.write_text(text, encoding="utf-8")
+                write_text(scratch, text)
             results[name] = path
         return results

@@ -154,7 +154,6 @@ class SimplifyDem(DemInput):
         from ..parameters.pyramid import save
 
         terrain = self.terrain(request)
-        self.require_numba(terrain.mesh.n_vertices)
         stages = {
             "simplify": tr("Simplifying (the first run also compiles, up to half a minute)"),
             "fit": tr("Fitting the heights"),

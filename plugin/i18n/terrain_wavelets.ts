@@ -1715,7 +1715,7 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
-    <source>The Python package numba is missing: the work runs some hundred times slower and large inputs are refused. Install it {} and start QGIS again.</source>
+    <source>The Python package numba is missing: the work takes some ten times longer, with the same result. Install it {} and start QGIS again.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1739,13 +1739,13 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/ui/dependencies.py"/>
-    <source>{} vertices are too many without the Python package numba (at most {}). Install it {} and start QGIS again, or take a coarser input.</source>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>level {}</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
-    <location filename="../../plugin/ui/layer_styles.py"/>
-    <source>level {}</source>
+    <location filename="../../plugin/ui/wording.py"/>
+    <source>a layer reprojected before</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

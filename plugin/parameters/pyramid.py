@@ -33,7 +33,7 @@ def save(request: Request, geo: GeoPyramid, path: str, start: float, stop: float
         The part of the whole work that this is.
     """
     from wavelet_gis.io.atomic import new_file
-    from wavelet_gis.io.pyramid_file import write_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
     from wavelet_gis.products.layers import coarse_layers, detail_layers
 
     from ..qgis_io.geopackage import add_layers

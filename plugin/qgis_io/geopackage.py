@@ -51,16 +51,20 @@ def add_layers(path: Path, layers: Iterable[Layer], wkt: str | None, feedback: Q
         When GDAL or SQLite cannot write.
     Cancelled
     """
-    from wavelet_gis.io.geopackage import write_styles
+    from wavelet_gis.io.geopackage import check_database, check_rows, write_styles
+    from wavelet_gis.io.read_back import read_back
 
-    styles = []
+    styles, n_rows = [], {}
     for layer in layers:
         require_running(feedback)
         _create(path, layer, wkt)
         _insert(path, layer, feedback)
         _index(path, layer)
+        n_rows[layer.name] = len(layer.geometry)
         styles.append((layer.name, layer.title, layer.style, layer.description))
     write_styles(path, styles)
+    read_back(path, check_database)
+    read_back(path, partial(check_rows, n_rows=n_rows))
 
 
 def _create(path: Path, layer: Layer, wkt: str | None) -> None:

@@ -44,6 +44,7 @@ def write_dem(
         A format that GDAL cannot write, or a full disk.
     """
     from wavelet_gis.io.atomic import new_file
+    from wavelet_gis.io.read_back import read_back
 
     driver_name = QgsRasterFileWriter.driverForExtension(os.path.splitext(path)[1].lstrip("."))
     refusal = partial(_unwritten, path)
@@ -69,6 +70,7 @@ def write_dem(
         dataset = None  # closes the file
         if not is_written:
             raise refusal(gdal.GetLastErrorMsg())
+        read_back(scratch, partial(_check, values=dem.values[None]))
 
 
 def write_bands(
@@ -83,6 +85,7 @@ def write_bands(
     Cancelled
     """
     from wavelet_gis.io.atomic import new_file
+    from wavelet_gis.io.read_back import read_back
 
     n_bands, n_rows, n_columns = bands.values.shape
     dtype = bands.values.dtype.newbyteorder("<")
@@ -106,6 +109,30 @@ def write_bands(
         band = dataset = None  # closes the file
         if not is_written:
             raise refusal(gdal.GetLastErrorMsg())
+        read_back(scratch, partial(_check, values=bands.values))
+
+
+def _check(path: str | os.PathLike[str], values: NDArray[Any]) -> None:
+    """Read a raster back: GDAL may fail when it closes a file, and tells nobody."""
+    from wavelet_gis.errors import OutputFileError
+
+    dataset = gdal.Open(str(path))
+    n_bands, n_rows, n_columns = values.shape
+    if dataset is None or dataset.RasterCount != n_bands:
+        raise OutputFileError(gdal.GetLastErrorMsg() or "it has lost its bands")
+    if (dataset.RasterYSize, dataset.RasterXSize) != (n_rows, n_columns):
+        raise OutputFileError(f"it has {dataset.RasterYSize} x {dataset.RasterXSize} cells")
+    at_once = max((1 << 22) // n_columns, 1)
+    for k in range(n_bands):
+        band = dataset.GetRasterBand(k + 1)
+        for start in range(0, n_rows, at_once):
+            due = values[k, start : start + at_once]
+            read = band.ReadRaster(0, start, n_columns, len(due))
+            if read is None:
+                raise OutputFileError(gdal.GetLastErrorMsg() or f"row {start} cannot be read")
+            there = np.frombuffer(read, values.dtype.newbyteorder("=")).reshape(due.shape)
+            if not np.array_equal(there, due, equal_nan=due.dtype.kind == "f"):
+                raise OutputFileError(f"its values differ from row {start} on")
 
 
 def _fill(dataset: Any, dem: Dem, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback) -> bool:

@@ -134,23 +134,9 @@ def slow_without_numba() -> str | None:
     if not missing([NUMBA]):
         return None
     return tr(
-        "The Python package numba is missing: the work runs some hundred times slower and large "
-        "inputs are refused. Install it {} and start QGIS again."
+        "The Python package numba is missing: the work takes some ten times longer, with the same "
+        "result. Install it {} and start QGIS again."
     ).format(remedy([NUMBA]))
-
-
-def refusal_without_numba(n_vertices: int) -> str | None:
-    """Return why so many vertices are refused, or None where numba is there or they are few."""
-    if not missing([NUMBA]):
-        return None
-    from wavelet_core._kernels._jit import MAX_VERTICES_WITHOUT_NUMBA
-
-    if n_vertices <= MAX_VERTICES_WITHOUT_NUMBA:
-        return None
-    return tr(
-        "{} vertices are too many without the Python package numba (at most {}). Install it {} and "
-        "start QGIS again, or take a coarser input."
-    ).format(n_vertices, MAX_VERTICES_WITHOUT_NUMBA, remedy([NUMBA]))
 
 
 def _dotted(version: Iterable[int]) -> str:

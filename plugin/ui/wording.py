@@ -50,7 +50,7 @@ def labels_of(algorithm: QgsProcessingAlgorithm) -> Callable[[str], str]:
     -------
     callable
         A parameter that the dialog does not have keeps its name. The CRS is a property of the
-        layer for most inputs.
+        layer for most inputs, and a mesh file has that of its plane.
     """
 
     def label_of(parameter: str) -> str:
@@ -60,6 +60,8 @@ def labels_of(algorithm: QgsProcessingAlgorithm) -> Callable[[str], str]:
                 return f"'{definition.description()}'"
         if parameter == "crs":
             return tr("the layer's properties")
+        if parameter == "to_crs":
+            return tr("a layer reprojected before")
         return parameter.replace("_", " ")
 
     return label_of

@@ -7,7 +7,7 @@ import rasterio
 from gis.samples import assert_same_cloud, assert_same_raster, hills, write_las, write_tif
 
 from wavelet_core import analyse
-from wavelet_gis.io.pyramid_file import read_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 from wavelet_gis.workflows.open import open_terrain
 
 

@@ -78,7 +78,7 @@ def test_details_give_a_band_for_every_level(run):
 
 def test_components_sum_with_the_base_to_the_dem(run, folder):
     from wavelet_core.features.spectrum import band_components
-    from wavelet_gis.io.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
     _, path, _ = run("details", "d.gpkg", "c.tif", "--what", "component")
     geo = read_pyramid(folder / "d.gpkg")

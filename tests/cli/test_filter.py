@@ -12,7 +12,7 @@ from gis.samples import hills, write_tif
 
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.cli.main import main
-from wavelet_gis.io.pyramid_file import read_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
 
 def band_of(path):

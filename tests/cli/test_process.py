@@ -211,7 +211,7 @@ def test_an_unforeseen_error_is_one_line_and_a_traceback_on_request(pyramid, mon
     def fail(path):
         raise ZeroDivisionError("a bug")
 
-    monkeypatch.setattr("wavelet_gis.io.pyramid_file.read_summary", fail)
+    monkeypatch.setattr("wavelet_gis.io.pyramid.pyramid_file.read_summary", fail)
     assert main(["info", str(pyramid)]) == 1
     err = capsys.readouterr().err
     assert err.count("\n") == 1
@@ -227,6 +227,6 @@ def test_memory_that_runs_out_is_one_line(pyramid, monkeypatch, capsys):
     def fail(path):
         raise MemoryError
 
-    monkeypatch.setattr("wavelet_gis.io.pyramid_file.read_summary", fail)
+    monkeypatch.setattr("wavelet_gis.io.pyramid.pyramid_file.read_summary", fail)
     assert main(["info", str(pyramid)]) == 1
     assert "not enough memory" in capsys.readouterr().err

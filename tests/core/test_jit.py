@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wavelet_core
-from wavelet_core import OptionError, SlowFallbackWarning, analyse, synthetic
+from wavelet_core import SlowFallbackWarning
 from wavelet_core._kernels import _jit
 
 PACKAGE = Path(wavelet_core.__file__).parent
@@ -46,40 +46,47 @@ def test_a_change_in_one_kernel_file_voids_the_compiled_code_of_the_others(tmp_p
             assert run_python(code, tmp_path, NUMBA_CACHE_DIR="") == f"{factor}.0"
 
 
-def test_without_numba_one_warning_says_so():
+def test_without_numba_one_warning_says_so_of_an_input_of_some_size():
     code = (
         "import warnings; from wavelet_core import analyse, synthetic\n"
+        "from wavelet_core._kernels import _jit\n"
         "with warnings.catch_warnings(record=True) as caught:\n"
         "    warnings.simplefilter('always')\n"
+        "    analyse(synthetic.hills(5, 5), levels=1)\n"
+        "    small = len(caught)\n"
+        "    _jit.ANNOUNCED_FROM = 20\n"
         "    for _ in range(2): analyse(synthetic.hills(5, 5), levels=1)\n"
-        "print([(w.category.__name__, str(w.message)) for w in caught])"
+        "print(small, [(w.category.__name__, str(w.message)) for w in caught])"
     )
     told = run_python(code, PACKAGE.parent, TERRAIN_WAVELETS_NO_NUMBA="1")
+    assert told.startswith("0 ")
     assert told.count("SlowFallbackWarning") == 1
     assert "pip install numba" in told
-    assert run_python(code, PACKAGE.parent, TERRAIN_WAVELETS_NO_NUMBA="") == "[]"
+    assert run_python(code, PACKAGE.parent, TERRAIN_WAVELETS_NO_NUMBA="") == "0 []"
 
 
-def test_without_numba_too_large_an_input_is_refused(monkeypatch):
-    monkeypatch.setattr(_jit, "HAS_NUMBA", False)
-    monkeypatch.setattr(_jit, "MAX_VERTICES_WITHOUT_NUMBA", 100)
-    with pytest.raises(OptionError, match=r"121 vertices .* without numba .*pip install numba"):
-        analyse(synthetic.hills(11, 11), levels=1)
+def test_without_numba_no_size_is_refused():
+    """Above 50,000 vertices it used to be: a DEM of 224 x 224 cells is no terrain."""
+    code = (
+        "from wavelet_core import analyse, synthetic\n"
+        "print(analyse(synthetic.hills(230, 230), levels=1).n_levels)"
+    )
+    assert run_python(code, PACKAGE.parent, TERRAIN_WAVELETS_NO_NUMBA="1") == "1"
 
 
 def test_the_warning_is_a_user_warning():
     assert issubclass(SlowFallbackWarning, UserWarning)
 
 
-def test_every_kernel_runs_over_ranges_like_over_the_whole():
-    seen = []
-    _jit.run_in_ranges(lambda start, stop: seen.append((start, stop)), 10)
-    assert seen == [(0, 10)]
-    if _jit.HAS_NUMBA:
-        covered = np.zeros(10_000, dtype=int)
+@pytest.mark.parametrize("n", [10, 10_000])
+def test_a_kernel_runs_over_ranges_like_over_the_whole(n, monkeypatch):
+    monkeypatch.setenv("TERRAIN_WAVELETS_THREADS", "3")
+    covered = np.zeros(n, dtype=np.int64)
+    _jit.run_in_ranges(counting, n, covered)
+    assert (covered == 1).all()
 
-        def count(start, stop):
-            covered[start:stop] += 1
 
-        _jit.run_in_ranges(count, 10_000)
-        assert (covered == 1).all()
+@_jit.kernel
+def counting(start, stop, covered):
+    for k in range(start, stop):
+        covered[k] += 1

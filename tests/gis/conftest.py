@@ -9,7 +9,7 @@ import pytest
 from gis.samples import hills, write_las, write_tif
 
 from wavelet_core import analyse
-from wavelet_gis.io.pyramid_file import write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
 from wavelet_gis.workflows.open import open_terrain
 
 

@@ -30,7 +30,7 @@ def pyramid(qgis, tmp_path_factory):
 
 def weights_in(path):
     """Return the weight of each attribute that a pyramid file tells of."""
-    from wavelet_gis.io.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
     pyramid = read_pyramid(path).pyramid
     names = pyramid.channels[-len(pyramid.parameters["attribute_weights"]) :]

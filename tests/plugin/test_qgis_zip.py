@@ -30,7 +30,7 @@ def test_the_zip_holds_the_plugin_and_no_more(archive):
     assert all(name.startswith(TOP) for name in files)
     inside = {name.removeprefix(TOP) for name in files}
     assert {"metadata.txt", "__init__.py", "LICENSE", "plugin/provider.py"} <= inside
-    assert {"wavelet_core/__init__.py", "wavelet_gis/io/pyramid_file.py"} <= inside
+    assert {"wavelet_core/__init__.py", "wavelet_gis/io/pyramid/pyramid_file.py"} <= inside
     assert any(name.startswith("processing_models/") for name in inside)
     assert {Path(name).suffix for name in inside} <= ALLOWED
     for part in ("test", "benchmark", ".ci", "__pycache__"):

@@ -34,8 +34,8 @@ from tools._limits import Trials  # noqa: E402
 from tools.pyramid_surgery import STRIP, opened, operate, reseal  # noqa: E402
 
 from wavelet_core.errors import WaveletError  # noqa: E402
-from wavelet_gis.io.array_codec import encode_array, header_of  # noqa: E402
-from wavelet_gis.io.pyramid_file import (  # noqa: E402
+from wavelet_gis.io.pyramid.array_codec import encode_array, header_of  # noqa: E402
+from wavelet_gis.io.pyramid.pyramid_file import (  # noqa: E402
     _require_tables,
     _to_parts,
     read_pyramid,
@@ -211,8 +211,8 @@ def _array_in(connection, rng):
 
 def _changed(connection, array_id, generator):
     """Return the array with one number changed a little, or much."""
-    from wavelet_gis.io.array_codec import decode_array
-    from wavelet_gis.io.array_tables import read_entries
+    from wavelet_gis.io.pyramid.array_codec import decode_array
+    from wavelet_gis.io.pyramid.array_tables import read_entries
 
     columns = [row[1] for row in connection.execute("PRAGMA table_info(wavelet_arrays)")]
     entries = read_entries(connection, with_checksums="checksum" in columns)

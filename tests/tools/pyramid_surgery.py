@@ -6,9 +6,9 @@ import sqlite3
 from contextlib import contextmanager
 
 from wavelet_core.errors import WaveletError
-from wavelet_gis.io import pyramid_file
-from wavelet_gis.io.array_codec import array_checksum, decode_array
-from wavelet_gis.io.array_tables import read_entries
+from wavelet_gis.io.pyramid import pyramid_file
+from wavelet_gis.io.pyramid.array_codec import array_checksum, decode_array
+from wavelet_gis.io.pyramid.array_tables import read_entries
 
 
 @contextmanager

@@ -1,21 +1,27 @@
-"""``njit`` with numba, and a plain-Python stand-in without it.
+"""One kernel, three engines: compiled by numba, on whole arrays, and as plain loops.
 
-The kernels release the GIL and are run over ranges of their index space by
-Python threads (:func:`run_in_ranges`) rather than by numba's ``prange``: numba's
-threading layers are not safe to enter from several threads at once, which is what
-happens inside QGIS, and a range-wise kernel gives the same bytes for any number
-of threads.
+A kernel is written as loops. With numba they are compiled; without it, its twin in
+:mod:`wavelet_core._arrays` does the same on whole arrays of numpy, for which every sum is taken in
+the same order: the bytes are the same. The loops themselves, run by Python, are the oracle that
+tests hold both against; nobody else meets them but for the few kernels without a twin.
+
+The kernels release the GIL and are run over ranges of their index space by Python threads
+(:func:`run_in_ranges`) rather than by numba's ``prange``: numba's threading layers are not safe to
+enter from several threads at once, which is what happens inside QGIS, and a range-wise kernel gives
+the same bytes for any number of threads.
 """
 
 from __future__ import annotations
 
 import contextlib
 import functools
+import importlib
 import itertools
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -23,11 +29,19 @@ from ..errors import OptionError, SlowFallbackWarning
 
 #: Set to any non-empty value to run without numba even where it is installed.
 DISABLE_VARIABLE = "TERRAIN_WAVELETS_NO_NUMBA"
+#: One of ``ENGINES``, instead of the fastest that is there.
+ENGINE_VARIABLE = "TERRAIN_WAVELETS_ENGINE"
 #: Number of threads for the kernels; all cores when unset.
 THREADS_VARIABLE = "TERRAIN_WAVELETS_THREADS"
-#: Above this many vertices the plain-Python kernels are refused: they take about
-#: half a millisecond a vertex and level.
-MAX_VERTICES_WITHOUT_NUMBA = 50_000
+ENGINES = ("compiled", "arrays", "loops")
+#: Above this many items a kernel without a twin is refused where it would run as plain loops: they
+#: take about half a millisecond an item.
+MAX_LOOPS = 50_000
+#: Inputs with more vertices than this are told that numba would be faster.
+ANNOUNCED_FROM = 100_000
+#: Inputs of up to so many vertices are done on whole arrays before numba, which takes some 25 s to
+#: compile the kernels the first time ever, would have begun.
+SMALL_INPUT = 10_000
 
 _numba: Any = None
 if not os.environ.get(DISABLE_VARIABLE):
@@ -36,7 +50,114 @@ if not os.environ.get(DISABLE_VARIABLE):
 
 HAS_NUMBA = _numba is not None
 
-_warned = False
+_chosen: ContextVar[str | None] = ContextVar("terrain_wavelets_engine", default=None)
+
+
+def current_engine() -> str:
+    """Return the name of the engine that kernels run on now.
+
+    Raises
+    ------
+    OptionError
+        The environment names one that there is not, or that is not to be had.
+    """
+    name = (
+        _chosen.get() or os.environ.get(ENGINE_VARIABLE) or ("compiled" if HAS_NUMBA else "arrays")
+    )
+    if name not in ENGINES:
+        raise OptionError(f"{ENGINE_VARIABLE} is {name!r}; give one of {', '.join(ENGINES)}.")
+    if name == "compiled" and not HAS_NUMBA:
+        raise OptionError(
+            f"{ENGINE_VARIABLE} is 'compiled' but numba is not there; install it or leave the "
+            "variable out."
+        )
+    return name
+
+
+@contextlib.contextmanager
+def engine(name: str) -> Iterator[None]:
+    """Run kernels on the named engine inside a ``with`` block."""
+    token = _chosen.set(name)
+    try:
+        current_engine()  # refuses what is not to be had
+        yield
+    finally:
+        _chosen.reset(token)
+
+
+def fitting_engine(n_vertices: int) -> contextlib.AbstractContextManager[None]:
+    """Return the engine for a piece of work: whole arrays for small inputs while numba is cold."""
+    is_free = not (_chosen.get() or os.environ.get(ENGINE_VARIABLE))
+    if is_free and HAS_NUMBA and n_vertices <= SMALL_INPUT and not _is_compiled():
+        return engine("arrays")
+    return contextlib.nullcontext()
+
+
+def _is_compiled() -> bool:
+    """Whether a kernel has been compiled, in this process or into the cache of one before."""
+    return any(step.is_compiled for step in _steps)
+
+
+_steps: list[Kernel] = []
+
+
+class Kernel:
+    """A step that the algorithms call, in the form of the present engine."""
+
+    def __init__(self, loops: Callable[..., Any]) -> None:
+        functools.update_wrapper(self, loops)
+        self.loops = loops
+        self.compiled = njit(loops)
+        _steps.append(self)
+
+    @property
+    def is_compiled(self) -> bool:
+        """Whether it need not be compiled before it runs, as far as numba lets one see."""
+        try:
+            index = Path(self.compiled._cache._cache_file._index_path)
+        except AttributeError:
+            return False
+        return bool(self.compiled.signatures) or index.exists()
+
+    @functools.cached_property
+    def arrays(self) -> Callable[..., Any] | None:
+        """The twin on whole arrays; None for the few kernels that have none."""
+        name = self.loops.__module__.rpartition(".")[2]
+        try:
+            module = importlib.import_module(f"..._arrays.{name}", __name__)
+        except ModuleNotFoundError:
+            return None
+        return getattr(module, self.loops.__name__, None)
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Run it on the present engine, over all of its items."""
+        name = current_engine()
+        if name == "compiled":
+            return self.compiled(*arguments)
+        if name == "arrays" and self.arrays is not None:
+            return self.arrays(*arguments)
+        return self.loops(*arguments)
+
+
+_announced = False
+
+
+def announce_engine(n_vertices: int) -> None:
+    """Say once, for an input of some size, that numba would be faster."""
+    global _announced
+    if not _announced and not HAS_NUMBA and n_vertices > ANNOUNCED_FROM:
+        _announced = True
+        warnings.warn(
+            "numba is not installed: the work takes some ten times longer, with the same result; "
+            "'pip install numba' speeds it up.",
+            SlowFallbackWarning,
+            stacklevel=3,
+        )
+
+
+def kernel(function: Callable[..., Any]) -> Kernel:
+    """Make a step of the engines out of its loops."""
+    return Kernel(function)
 
 
 def njit(function: Callable[..., Any]) -> Any:
@@ -72,32 +193,6 @@ def _stamp_of_all_kernels() -> tuple[tuple[str, int, int], ...]:
     return tuple((file.name, file.stat().st_mtime_ns, file.stat().st_size) for file in files)
 
 
-def announce_fallback(n_vertices: int) -> None:
-    """Warn once that numba is absent; refuse what would take hours without it.
-
-    Raises
-    ------
-    OptionError
-        For more than ``MAX_VERTICES_WITHOUT_NUMBA`` vertices without numba.
-    """
-    global _warned
-    if HAS_NUMBA:
-        return
-    if n_vertices > MAX_VERTICES_WITHOUT_NUMBA:
-        raise OptionError(
-            f"{n_vertices} vertices are too many without numba (at most "
-            f"{MAX_VERTICES_WITHOUT_NUMBA}); install it with 'pip install numba' or thin the input."
-        )
-    if not _warned:
-        _warned = True
-        warnings.warn(
-            "numba is not installed: the kernels run as plain Python, some hundred times slower; "
-            "'pip install numba' mends it.",
-            SlowFallbackWarning,
-            stacklevel=3,
-        )
-
-
 def n_threads() -> int:
     """Threads for the kernels: the environment's wish, else the number of cores."""
     wish = os.environ.get(THREADS_VARIABLE, "")
@@ -106,22 +201,33 @@ def n_threads() -> int:
     return os.cpu_count() or 1
 
 
-def run_in_ranges(kernel: Callable[..., Any], n_items: int, *arguments: Any) -> None:
-    """Run ``kernel(start, stop, *arguments)`` over ``[0, n_items)``, in threads.
+def run_in_ranges(step: Kernel, n_items: int, *arguments: Any) -> None:
+    """Run ``step(start, stop, *arguments)`` over ``[0, n_items)``; compiled, in threads.
 
     Every item must write only its own results, so that the split does not matter.
+
+    Raises
+    ------
+    OptionError
+        For a kernel that could only run as plain loops, over more than ``MAX_LOOPS`` items.
     """
+    name = current_engine()
+    if name == "arrays" and step.arrays is None and n_items > MAX_LOOPS:
+        raise OptionError(
+            f"{step.loops.__name__} over {n_items} items is too slow without numba (at most "
+            f"{MAX_LOOPS}); install numba, or choose another prediction or a smaller input."
+        )
     threads = n_threads()
-    if not HAS_NUMBA or threads == 1 or n_items < 4096:
-        kernel(0, n_items, *arguments)
+    if name != "compiled" or threads == 1 or n_items < 4096:
+        step(0, n_items, *arguments)
         return
+    run = step.compiled
     n_ranges = 4 * threads
     bounds = [n_items * k // n_ranges for k in range(n_ranges + 1)]
-    kernel(0, 0, *arguments)  # compiled once, before the threads race for it
+    run(0, 0, *arguments)  # compiled once, before the threads race for it
     with ThreadPoolExecutor(threads) as pool:
         jobs = [
-            pool.submit(kernel, start, stop, *arguments)
-            for start, stop in itertools.pairwise(bounds)
+            pool.submit(run, start, stop, *arguments) for start, stop in itertools.pairwise(bounds)
         ]
         for job in jobs:
             job.result()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._jit import njit
+from ._jit import kernel
 
 # kinds of vertex, by the fans of faces around it
 INTERIOR = 0
@@ -12,7 +12,7 @@ ISOLATED = 3
 
 
 # faces (n_faces, 3) int32; indptr (n_vertices + 1,) int64 and star (3 n_faces,) int32, filled
-@njit
+@kernel
 def fill_stars(faces, indptr, star):
     for face in range(faces.shape[0]):
         for corner in range(3):
@@ -29,7 +29,7 @@ def fill_stars(faces, indptr, star):
 
 # The ring of v is written at indptr[v] + v and has room for one more entry than v has faces.
 # kind (n,) int8; ring (3 n_faces + n,), ring_size (n,), bad_neighbour (n,) int32: all filled
-@njit
+@kernel
 def order_rings(start, stop, faces, indptr, star, kind, ring, ring_size, bad_neighbour):
     for vertex in range(start, stop):
         first, last = indptr[vertex], indptr[vertex + 1]

@@ -2,12 +2,12 @@
 
 import math
 
-from ._jit import njit
+from ._jit import kernel
 
 
 # points (n, >= 3) float64, the first three columns are used; faces (n_faces, 3) int32;
 # kind (n,) int8, 0 is interior; curvature (n,) float64, filled with 4 H^2 - 2 K, at least 0
-@njit
+@kernel
 def total_curvatures(start, stop, points, faces, indptr, star, kind, curvature):
     for vertex in range(start, stop):
         curvature[vertex] = 0.0
@@ -57,7 +57,7 @@ def total_curvatures(start, stop, points, faces, indptr, star, kind, curvature):
 
 
 # Eq. 38; energy (n,) float64, filled
-@njit
+@kernel
 def bending_energies(start, stop, points, faces, indptr, star, curvature, energy):
     for vertex in range(start, stop):
         total = 0.0

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._jit import inlined, njit
+from ._jit import inlined, kernel
 
 NO_INDEX = -1
 # longest one-ring that is looked at; a vertex with more neighbours stays
@@ -31,7 +31,7 @@ class HalfEdges(NamedTuple):
 
 
 # indptr (n + 1,) int64 and star (3 m,) int32 from connectivity.fill_stars; mesh.twin, filled
-@njit
+@kernel
 def find_twins(start, stop, indptr, star, mesh):
     origin = mesh.origin
     for face in range(start, stop):
@@ -49,7 +49,7 @@ def find_twins(start, stop, indptr, star, mesh):
 
 
 # mesh.outgoing, filled; n_fans (n,) int8, filled with 0, 1 or 2 (two and more)
-@njit
+@kernel
 def find_outgoing(start, stop, indptr, star, mesh, n_fans):
     origin, twin = mesh.origin, mesh.twin
     for vertex in range(start, stop):
@@ -77,6 +77,18 @@ def find_outgoing(start, stop, indptr, star, mesh, n_fans):
             n_fans[vertex] = 1 if n_walked == degree and n_open < 2 else 2
 
 
+# mesh.outgoing, filled anew: the first half-edge that leaves each vertex, or the one without a twin
+@kernel
+def renew_outgoing(mesh, face_lives):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    outgoing[:] = -1
+    for face in range(face_lives.shape[0]):
+        if face_lives[face]:
+            for half_edge in range(3 * face, 3 * face + 3):
+                if outgoing[origin[half_edge]] < 0 or twin[half_edge] < 0:
+                    outgoing[origin[half_edge]] = half_edge
+
+
 @inlined
 def moved(half_edge, face_position):
     return 3 * face_position[half_edge // 3] + half_edge % 3 if half_edge >= 0 else -1
@@ -84,7 +96,7 @@ def moved(half_edge, face_position):
 
 # Half-edges of the faces (m,) int64 that live on, renumbered; packed: HalfEdges, filled.
 # position (n,), face_position (n_faces,) int32: where each vertex and face goes
-@njit
+@kernel
 def pack_faces(start, stop, faces, position, face_position, mesh, packed):
     for k in range(start, stop):
         for corner in range(3):
@@ -94,7 +106,7 @@ def pack_faces(start, stop, faces, position, face_position, mesh, packed):
 
 
 # The same for the vertices (n,) int64 that live on
-@njit
+@kernel
 def pack_vertices(start, stop, vertices, face_position, mesh, packed):
     for k in range(start, stop):
         packed.outgoing[k] = moved(mesh.outgoing[vertices[k]], face_position)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ._jit import njit
+from ._jit import kernel
 
 # a point this far outside a face, in barycentric coordinates, still counts as on it
 EDGE_TOLERANCE = 1e-9
@@ -12,7 +12,7 @@ EDGE_TOLERANCE = 1e-9
 
 # plan (n_points, 2) float64; the grid has n_columns x n_rows square cells of `size` from (x0, y0);
 # cell_indptr (n_cells + 1,) int64 and order (n_points,) int64, filled
-@njit
+@kernel
 def sort_into_cells(plan, x0, y0, size, n_columns, n_rows, cell_indptr, order):
     n = plan.shape[0]
     cell = np.empty(n, dtype=np.int64)
@@ -32,7 +32,7 @@ def sort_into_cells(plan, x0, y0, size, n_columns, n_rows, cell_indptr, order):
 # vertices (n, >= 2), points (n_points, >= 2) float64, of which x and y count; faces (n_faces, 3)
 # int; face_of (n_points,) int64, -1 on entry: filled with the first face that covers each point,
 # weights (n_points, 2) with those of its second and third corner
-@njit
+@kernel
 def cover_points(
     vertices, faces, points, x0, y0, size, n_columns, n_rows, cell_indptr, order, face_of, weights
 ):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._jit import njit
+from ._jit import kernel
 from .collapse import is_legal, is_removable
 from .quadric import evaluate
 
@@ -17,7 +17,7 @@ ROUNDING = 1e-14
 # order (n_candidates,) int64: vertices by ascending cost; points (n, d) float64;
 # plan (n, 2) float64; quadrics (n, size) float64, or (0, 0) to take the nearest target instead;
 # mark (n,) int8, odd and target (n,) int32: filled. Returns the number of odd vertices.
-@njit
+@kernel
 def label(
     order, max_odd, in_plan, points, plan, faces, indptr, star, ring, ring_size, kind, locked,
     quadrics, mark, odd, target,

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ._jit import njit
+from ._jit import kernel, njit
 from .connectivity import BOUNDARY
 
 # shortest edge, in normalised coordinates, that the geometric weights tell from zero
@@ -29,7 +29,7 @@ LARGEST_PLANE_NORM = 1.0 + 1e-6
 
 
 # even_position (n,) int32; columns (nnz,) int32, filled
-@njit
+@kernel
 def ring_columns(start, stop, odd, row_indptr, indptr, ring, even_position, columns):
     for row in range(start, stop):
         base = indptr[odd[row]] + odd[row]
@@ -37,7 +37,7 @@ def ring_columns(start, stop, odd, row_indptr, indptr, ring, even_position, colu
             columns[row_indptr[row] + k] = even_position[ring[base + k]]
 
 
-@njit
+@kernel
 def geometric_weights(start, stop, odd, row_indptr, indptr, ring, points, weights):
     for row in range(start, stop):
         v = odd[row]
@@ -68,7 +68,7 @@ def cotangent(points, corner, p, q):
     return (px * qx + py * qy + pz * qz) / doubled_area
 
 
-@njit
+@kernel
 def cotangent_weights(start, stop, odd, row_indptr, indptr, ring, kind, points, weights):
     for row in range(start, stop):
         v = odd[row]
@@ -182,7 +182,7 @@ def nonnegative_solution(matrix, size, x):
                 break
 
 
-@njit
+@kernel
 def nnls_weights(start, stop, odd, row_indptr, indptr, ring, points, weights):
     for row in range(start, stop):
         v = odd[row]
@@ -203,7 +203,7 @@ def nnls_weights(start, stop, odd, row_indptr, indptr, ring, points, weights):
             weights[first + k] = solution[k] / total if total > 0.0 else 1.0 / size
 
 
-@njit
+@kernel
 def least_squares_weights(start, stop, odd, row_indptr, indptr, ring, points, weights):
     for row in range(start, stop):
         v = odd[row]
@@ -224,7 +224,7 @@ def least_squares_weights(start, stop, odd, row_indptr, indptr, ring, points, we
 
 # plan (n, 2) float64. The weights of least norm that give back every plane; even ones where the
 # ring is a line in plan, or does not lie round v (signal "xyz" only)
-@njit
+@kernel
 def plane_weights(start, stop, odd, row_indptr, indptr, ring, plan, weights):
     for row in range(start, stop):
         v = odd[row]
@@ -259,7 +259,7 @@ def plane_weights(start, stop, odd, row_indptr, indptr, ring, plan, weights):
 
 # target (n_odd,) int32; plan (n, 2) float64; corners (n_odd, 3) int32 and weights (n_odd, 3)
 # float64, filled: the coarse face that covers each odd vertex in plan, and its coordinates there
-@njit
+@kernel
 def covering_faces(start, stop, odd, target, indptr, ring, ring_size, kind, plan, corners, weights):
     for row in range(start, stop):
         v, a = odd[row], target[row]

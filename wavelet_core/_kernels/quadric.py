@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from ._jit import njit
+from ._jit import kernel, njit
 from .lattice import on_lattice
 
 # what rounding leaves of a quadric's value, as a part of its terms: some 256 times the spacing of
@@ -17,7 +17,7 @@ ROUNDING = 2.0**-44
 
 
 # points (n, d) float64; quadrics (n, (d + 1) (d + 2) / 2) float64, filled: Eq. 35
-@njit
+@kernel
 def star_quadrics(start, stop, points, faces, indptr, star, quadrics):
     d = points.shape[1]
     u = np.empty(d)
@@ -98,7 +98,7 @@ def magnitude(quadric, point):
 
 # Eq. 36; cost (n,) float64, filled: on a lattice of powers of two above what rounding leaves, so
 # that costs which are equal in exact arithmetic are equal
-@njit
+@kernel
 def ring_costs(start, stop, points, quadrics, indptr, ring, ring_size, cost):
     total = np.empty(quadrics.shape[1])
     for vertex in range(start, stop):
@@ -114,7 +114,7 @@ def ring_costs(start, stop, points, quadrics, indptr, ring, ring_size, cost):
 
 
 # Eqs. 52-53: quadrics (n, size) float64, changed; odd (n_odd,) int32; columns are even positions
-@njit
+@kernel
 def spread_quadrics(odd, even, row_indptr, columns, weights, quadrics):
     for row in range(odd.shape[0]):
         total = 0.0

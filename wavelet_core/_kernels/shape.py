@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ._jit import njit
+from ._jit import kernel, njit
 
 # more neighbours than this are not looked at; real stars have 6 on average
 MAX_NEIGHBOURS = 64
@@ -66,7 +66,7 @@ def gather_neighbours(vertex, n_rings, faces, indptr, star, neighbours):
 
 # points (n, 3) float64; faces (n_faces, 3) int32; indptr (n + 1,) int64, star int32;
 # coefficients (n, 5) float64, filled with z_x, z_y, z_xx, z_xy, z_yy; NaN without a face
-@njit
+@kernel
 def fit_quadratics(start, stop, points, faces, indptr, star, coefficients):
     neighbours = np.empty(MAX_NEIGHBOURS, dtype=np.int32)
     matrix = np.empty((5, 5))
@@ -136,7 +136,7 @@ def mean_gradient(vertex, points, faces, indptr, star, coefficients):
 
 # positions (n_even, 2), odd_positions (n_odd, 2) float64; indptr, indices, weights: a prediction
 # filter; first (n_odd, 2) and second (n_odd,) float64, filled with its plan moments
-@njit
+@kernel
 def filter_moments(start, stop, indptr, indices, weights, positions, odd_positions, first, second):
     for row in range(start, stop):
         first[row, 0], first[row, 1], second[row] = 0.0, 0.0, 0.0

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ._jit import njit
+from ._jit import kernel
 from .half_edges import MAX_RING, collapse, meets_link_condition, walk_ring
 
 CANDIDATE = 1
@@ -11,7 +11,7 @@ TAKEN = 2
 
 # Which of the candidates still in question are cheaper than all such neighbours?
 # active (k,) int32; state (n,) int8; cost (n,) float64; key (n,) uint32; wins (k,) bool, filled
-@njit
+@kernel
 def find_cheapest(start, stop, active, mesh, state, cost, key, wins):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
@@ -32,7 +32,7 @@ def find_cheapest(start, stop, active, mesh, state, cost, key, wins):
 
 
 # Take the winners, rule their neighbours out
-@njit
+@kernel
 def take_cheapest(start, stop, active, wins, mesh, state):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
@@ -46,7 +46,7 @@ def take_cheapest(start, stop, active, wins, mesh, state):
 
 
 # size (n_odd,) int64, filled
-@njit
+@kernel
 def measure_rings(start, stop, odd, mesh, size):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
@@ -55,7 +55,7 @@ def measure_rings(start, stop, odd, mesh, size):
 
 
 # ring, ring_faces (indptr[-1],) int32, filled: from the target on, NO_INDEX where no face follows
-@njit
+@kernel
 def record_rings(start, stop, odd, target, mesh, indptr, ring, ring_faces):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     around, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
@@ -71,7 +71,7 @@ def record_rings(start, stop, odd, target, mesh, indptr, ring, ring_faces):
 
 
 # Which collapses meet the link condition on the present mesh? is_linked (n_odd,) bool, filled
-@njit
+@kernel
 def check_links(start, stop, odd, target, mesh, is_linked):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
@@ -84,7 +84,7 @@ def check_links(start, stop, odd, target, mesh, is_linked):
 
 # Collapse all that the link condition allows, also against the edges made just before.
 # is_taken (n_odd,) bool, filled
-@njit
+@kernel
 def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, is_taken):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     for row in range(odd.shape[0]):

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ._jit import inlined, njit
+from ._jit import inlined, kernel
 from .half_edges import MAX_RING, meets_link_condition, walk_ring
 from .lattice import on_lattice
 from .outline import CUTS, STAYS, nearest_on_edge, outline_rule
@@ -387,7 +387,7 @@ def star_corners(k, size, n_sides, spoke):
 # without update. vertices: VertexState, of which cost, target, is_stale and is_new are filled.
 # squared (m,) float64: present squared errors of the faces.
 # Where only heights have changed (not is_new), the target stays the one that it was.
-@njit
+@kernel
 def collapse_costs(
     start, stop, todo, mesh, surface, points, moments, vertices, squared, outline, limits
 ):
@@ -430,7 +430,7 @@ def collapse_costs(
             v = todo[q]
             q += 1
             known = target[v]
-            keeps_target = with_update and not is_new[v] and known >= 0
+            keeps_target = with_update and by_sum and not is_new[v] and known >= 0
             is_stale[v], is_new[v] = False, False
             cost[v], target[v] = np.inf, -1
             if stays[v]:
@@ -514,5 +514,5 @@ def collapse_costs(
                     cutoff, here, 0.0,
                 )[0]  # fmt: skip
             step = step_of(n_points + 1, before_it + abs(here), height_step) + MOMENT_STEP * terms
-            cost[v] = on_lattice(here, step)
             is_stale[v] = here > cutoff  # a lower bound only
+            cost[v] = cutoff if is_stale[v] else on_lattice(here, step)

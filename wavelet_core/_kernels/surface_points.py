@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._jit import inlined, njit
+from ._jit import inlined, kernel
 from .half_edges import MAX_RING, before
 from .outline import cuts_off, nearest_on_edge
 
@@ -79,7 +79,7 @@ def is_in_wedge(t, fan_xy, x, y):
 
 # rings in CSR: indptr (n_odd + 1,) int64; ring_faces int32; size (n_odd,) int64, filled with the
 # number of points that each collapse moves, its own vertex included
-@njit
+@kernel
 def count_points(start, stop, indptr, ring_faces, points, size):
     n_points = points.n_points
     for row in range(start, stop):
@@ -127,7 +127,7 @@ def weights_in_fan(n_wedges, fan_xy, x, y):
 # a new outline edge leaves outside, to the nearest place of that edge.
 # odd (n_odd,) int32; ring, ring_faces int32 from the target on; first (n_odd + 1,) int64, where
 # the points go; corners (n_odd, 3) int32, weights (n_odd, 3), details (n_odd, c) float64, filled
-@njit
+@kernel
 def hand_over(
     start, stop, odd, indptr, ring, ring_faces, surface, points, first, face_changed,
     squared_tolerance, corners, weights, details,
@@ -230,7 +230,7 @@ def hand_over(
 
 # Copy the points of the given faces, in their order, to the front of other arrays.
 # faces (n,) int32; first (n + 1,) int64, where each face's points go
-@njit
+@kernel
 def copy_points(start, stop, faces, first, points, x, y, z):
     start_of, point_x, point_y, point_z = points.start, points.x, points.y, points.z
     for k in range(start, stop):
@@ -245,7 +245,7 @@ def copy_points(start, stop, faces, first, points, x, y, z):
 # Errors of the faces that changed, or one of whose corners moved: in faces (FaceState), and the
 # moments of their corners, which are empty without update. Of vertices (VertexState), is_stale is
 # set for the corners of those faces, and is_new where the faces themselves changed.
-@njit
+@kernel
 def sum_over_faces(start, stop, mesh, surface, points, vertices, faces, moments):
     face_lives, face_changed = faces.lives, faces.changed
     squared, squared_z, largest_z = faces.squared, faces.squared_z, faces.largest_z
@@ -309,7 +309,7 @@ def sum_over_faces(start, stop, mesh, surface, points, vertices, faces, moments)
 
 
 # Moments of the star of each vertex with has_moved (n,) bool, which is reset.
-@njit
+@kernel
 def sum_over_stars(start, stop, mesh, vertex_lives, has_moved, surface, moments):
     twin, outgoing = mesh.twin, mesh.outgoing
     z, measured = surface.z, surface.measured
@@ -337,7 +337,7 @@ def sum_over_stars(start, stop, mesh, vertex_lives, has_moved, surface, moments)
 
 # The minimum-norm update of one step (Eqs. 47 and 50), in place on z (n, c) and integrals (n,).
 # support in CSR: indptr (n_odd + 1,), columns int32; weights float64
-@njit
+@kernel
 def update_heights(odd, indptr, columns, weights, details, locked, integrals, z, z_changed):
     n_channels = z.shape[1]
     for row in range(odd.shape[0]):

@@ -1,6 +1,6 @@
 """Kernels of the updates: minimum norm, and the sequential one-ring mean."""
 
-from ._jit import njit
+from ._jit import kernel, njit
 
 
 # The number that the integrals over the unlocked support of one odd vertex, entries first to last
@@ -19,7 +19,7 @@ def minimum_norm_factor(first, last, columns, odd_integral, integrals, locked):
 
 # indptr (n_odd + 1,) int64, columns (nnz,) int32, odd_integrals (n_odd,), integrals (n_even,),
 # locked (n_even,) bool; values (nnz,) float64, filled where the column is unlocked
-@njit
+@kernel
 def minimum_norm_columns(indptr, columns, odd_integrals, integrals, locked, values):
     for row in range(len(indptr) - 1):
         first, last = indptr[row], indptr[row + 1]
@@ -55,7 +55,7 @@ def ring_constant(first, last, columns, weights, detail, locked, even, channel):
 
 # indptr (n_odd + 1,) int64, columns (nnz,) int32, weights (nnz,), details (n_odd, n_channels),
 # locked (n_even,) bool; even (n_even, n_channels) float64, changed
-@njit
+@kernel
 def add_ring_means(indptr, columns, weights, details, locked, even):
     for row in range(details.shape[0]):
         for channel in range(details.shape[1]):
@@ -68,7 +68,7 @@ def add_ring_means(indptr, columns, weights, details, locked, even):
                     even[columns[k], channel] += constant
 
 
-@njit
+@kernel
 def subtract_ring_means(indptr, columns, weights, details, locked, even):
     for row in range(details.shape[0] - 1, -1, -1):
         for channel in range(details.shape[1]):

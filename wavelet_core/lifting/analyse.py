@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .._kernels._jit import announce_fallback
+from .._kernels._jit import announce_engine, fitting_engine
 from .._validate import FloatArray, frozen
 from ..errors import MeshError, OptionError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
@@ -158,8 +158,9 @@ def analyse(
         removal_fraction=removal_fraction,
         outline_tolerance=outline_tolerance,
     )
-    announce_fallback(mesh.n_vertices)
-    return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
+    announce_engine(mesh.n_vertices)
+    with fitting_engine(mesh.n_vertices):
+        return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
 
 
 class _Analysis:

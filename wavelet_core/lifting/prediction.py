@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from .._kernels._jit import run_in_ranges
+from .._kernels._jit import Kernel, run_in_ranges
 from .._kernels.prediction import (
     cotangent_weights,
     covering_faces,
@@ -168,7 +168,7 @@ def _ring_rows(removal: Removal) -> _RingRows:
     return _RingRows(indptr, columns)
 
 
-def _by_kernel(kernel: Callable[..., Any], removal: Removal, *arguments: NDArray) -> csr_array:
+def _by_kernel(kernel: Kernel, removal: Removal, *arguments: NDArray) -> csr_array:
     """Return P with the weights that a kernel gives the ring of each odd vertex."""
     rows, connectivity = _ring_rows(removal), removal.connectivity
     weights = np.empty(len(rows.columns))

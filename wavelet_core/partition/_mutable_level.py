@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
 from .._kernels.connectivity import fill_stars
-from .._kernels.half_edges import HalfEdges, find_outgoing, find_twins, pack_faces, pack_vertices
+from .._kernels.half_edges import (
+    HalfEdges,
+    find_outgoing,
+    find_twins,
+    pack_faces,
+    pack_vertices,
+    renew_outgoing,
+)
 from .._kernels.surface_choice import (
     CANDIDATE,
     TAKEN,
@@ -315,6 +322,7 @@ class SurfaceLevel:
         collapse_all(
             odd, indptr, ring, ring_faces, self._mesh, vertices.lives, self._faces.lives, goes
         )
+        renew_outgoing(self._mesh, self._faces.lives)
         if len(self._outline.lives):
             self._outline.lives[vertices.ids[odd[goes]]] = False
         if goes.all():

@@ -8,6 +8,7 @@ there is a command; it imports what it needs when it runs, so that ``--help`` co
 from __future__ import annotations
 
 import argparse
+import errno
 import importlib
 import logging
 import os
@@ -22,11 +23,15 @@ from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
 from wavelet_gis.cli import commands, interrupts
 from wavelet_gis.cli.console import Console
 from wavelet_gis.cli.flags import flag_names
+from wavelet_gis.cli.streams import make_standard_streams_usable
 from wavelet_gis.cli.table_help import TableHelp
 
 __all__ = ["main"]
 
 REFUSED = 1
+
+#: What a system says when a file does not fit; Windows knows no quota.
+_NO_ROOM = {errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC)}
 
 #: Set to see where an unforeseen error came from.
 DEBUG_VARIABLE = "TERRAIN_WAVELETS_DEBUG"
@@ -45,6 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     int
         0 done, 1 refused with one line on standard error, 2 usage, 130 interrupted.
     """
+    make_standard_streams_usable()
     try:
         chosen = _parser().parse_args(arguments)
     except SystemExit as stop:  # argparse has said why
@@ -83,13 +89,26 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
         if isinstance(error, WaveletError):
             _complain(error.in_words(chosen.name_of))
         elif isinstance(error, OSError | sqlite3.Error):
-            _complain(f"the operating system refused: {error}; is the disk full?")
+            _complain(f"the operating system refused: {error}{_remedy(error)}")
         else:
             _complain(
                 f"an unforeseen error, {type(error).__name__}: {error}; please report it, with "
                 f"what {DEBUG_VARIABLE}=1 prints"
             )
     return REFUSED
+
+
+def _remedy(error: OSError | sqlite3.Error) -> str:
+    """Return what to look at, by the number of the error; empty where only the text tells."""
+    if isinstance(error, sqlite3.Error):
+        code = getattr(error, "sqlite_errorcode", 0) & 0xFF
+        is_full, is_held = code == sqlite3.SQLITE_FULL, code == sqlite3.SQLITE_BUSY
+    else:
+        is_full = error.errno in _NO_ROOM
+        is_held = False
+    if is_full:
+        return "; is the disk full?"
+    return "; close the other program that has the file open" if is_held else ""
 
 
 def _stopped(stop: BaseException, chosen: argparse.Namespace, before: _State) -> int:

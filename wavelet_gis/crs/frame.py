@@ -19,9 +19,11 @@ from wavelet_gis.errors import CrsError
 __all__ = [
     "MAX_DISTORTION",
     "MAX_SPAN_DEGREES",
+    "UNIT_OF_X_AND_Y",
     "CoordinateSystem",
     "Georeference",
     "LocalFrame",
+    "assumed_vertical_unit",
     "metres_per_degree",
     "vertical_unit_name",
     "working_frame",
@@ -36,6 +38,9 @@ MAX_SPAN_DEGREES = 20.0
 
 #: Metres in one vertical unit, by the names used in files and messages.
 VERTICAL_UNITS = {"metre": 1.0, "foot": 0.3048, "us_survey_foot": 1200.0 / 3937.0}
+
+#: Said of z where nobody knows the unit of x and y.
+UNIT_OF_X_AND_Y = "unit of x and y"
 
 _UNIT_ALIASES = {
     "m": "metre",
@@ -236,8 +241,7 @@ def working_frame(
     bounds : (x_min, y_min, x_max, y_max)
         Of the data, in the file's coordinates.
     vertical_unit : str, optional
-        Unit of z; by default the CRS's, and where it has none, metres for a geographic CRS and
-        the unit of x and y for any other.
+        Unit of z; by default the CRS's, and where it has none, that of `assumed_vertical_unit`.
 
     Returns
     -------
@@ -265,6 +269,8 @@ def working_frame(
     """
     unit = vertical_unit_name(vertical_unit) if vertical_unit else system.vertical_unit
     if system.kind != "geographic":
+        if unit is None and assumed_vertical_unit(system) != UNIT_OF_X_AND_Y:
+            unit = assumed_vertical_unit(system)
         metres = VERTICAL_UNITS[unit] if unit and system.kind == "projected" else None
         z_scale = 1.0 if metres is None else metres / system.horizontal_unit
         return LocalFrame(z_scale=1.0 if abs(z_scale - 1.0) < 1e-12 else z_scale)
@@ -280,6 +286,30 @@ def working_frame(
         y_scale=north * math.degrees(system.horizontal_unit),
         z_scale=VERTICAL_UNITS[unit or "metre"],
     )
+
+
+def assumed_vertical_unit(system: CoordinateSystem) -> str:
+    """Return the unit of z where nothing tells it.
+
+    Parameters
+    ----------
+    system : CoordinateSystem
+        Of x and y.
+
+    Returns
+    -------
+    str
+        The unit of x and y where that is the metre or a foot; the metre for degrees, and for
+        kilometres and all else in which nobody measures heights; `UNIT_OF_X_AND_Y` without a map
+        plane.
+    """
+    if system.kind == "unknown":
+        return UNIT_OF_X_AND_Y
+    if system.kind == "projected":
+        for name, metres in VERTICAL_UNITS.items():
+            if abs(system.horizontal_unit / metres - 1.0) < 2e-7:
+                return name
+    return "metre"
 
 
 def metres_per_degree(latitude: float, system: CoordinateSystem) -> tuple[float, float]:
@@ -337,6 +367,12 @@ def _check_span(degrees: NDArray[np.float64]) -> None:
             east=east,
             south=south,
             north=north,
+        )
+    if east - west > 180.0:
+        raise CrsError(
+            f"x runs from {west:g} to {east:g} degrees: the data lie on both sides of the "
+            "antimeridian, or around the earth; add 360 to the negative longitudes, reproject the "
+            "input to a projected CRS, or cut it."
         )
     distortion = _distortion(south, north)
     span = max(east - west, north - south)

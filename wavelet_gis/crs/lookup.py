@@ -10,7 +10,7 @@ from wavelet_gis.errors import CrsError
 if TYPE_CHECKING:
     from pyproj import CRS
 
-__all__ = ["coordinate_system", "epsg_of"]
+__all__ = ["coordinate_system", "epsg_of", "horizontal_part"]
 
 
 def coordinate_system(definition: str | None) -> CoordinateSystem:
@@ -46,7 +46,7 @@ def coordinate_system(definition: str | None) -> CoordinateSystem:
     # another text, and the file's CRS would not come back as it was.
     is_wkt = "[" in definition
     wkt = definition if is_wkt else crs.to_wkt()
-    horizontal = _horizontal_part(crs)
+    horizontal = horizontal_part(crs)
     ellipsoid = crs.ellipsoid
     return CoordinateSystem(
         wkt=wkt,
@@ -69,7 +69,8 @@ def epsg_of(system: CoordinateSystem) -> int | None:
     return code
 
 
-def _horizontal_part(crs: CRS) -> CRS:
+def horizontal_part(crs: CRS) -> CRS:
+    """Return what a CRS says of x and y, without heights and datum shifts."""
     while crs.is_bound or crs.is_compound:
         part = crs.source_crs if crs.is_bound else crs.sub_crs_list[0]
         if part is None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 from xml.sax.saxutils import quoteattr  # nosec B406: nothing is parsed, only written
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 
 import wavelet_core
 from wavelet_core import MissingDependencyError, TriangleMesh
+from wavelet_gis.errors import OutputFileError
+from wavelet_gis.io.read_back import recorded_stream, write_text
 
 __all__ = ["write_dxf", "write_glb", "write_landxml", "write_stl"]
 
@@ -37,7 +40,7 @@ def write_stl(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
     triangles["normal"] = np.divide(normals, lengths, out=normals, where=lengths > 0)
     triangles["corners"] = corners
     header = "origin " + " ".join(f"{value:.0f}" for value in origin)
-    with open(path, "wb") as stream:
+    with recorded_stream(path) as stream:
         stream.write(header.encode("ascii")[:80].ljust(80))
         stream.write(np.uint32(mesh.n_faces).astype("<u4").tobytes())
         stream.write(triangles.tobytes())
@@ -63,20 +66,27 @@ def write_glb(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
     placed[:3, 3] = origin
     scene = trimesh.Scene()
     scene.add_geometry(local, node_name="terrain", transform=_Z_UP_TO_Y_UP @ placed)
-    with open(path, "wb") as stream:
+    with recorded_stream(path) as stream:
         stream.write(scene.export(file_type="glb"))
 
 
 def write_landxml(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None = None) -> None:
     """Write a LandXML 1.2 TIN surface: points as northing, easting, elevation, ids from 1.
 
-    The unit is the metre unless the CRS counts in feet.
+    The unit is that in which the CRS counts x and y, in which z must be, too; the metre without a
+    CRS.
+
+    Raises
+    ------
+    OutputFileError
+        When LandXML has no name for that unit.
     """
+    units = _landxml_unit(wkt or "", path)
     software = quoteattr(f"terrain-wavelets {wavelet_core.__version__}")
-    with open(path, "w", encoding="utf-8", newline="\n") as stream:
+    with recorded_stream(path) as stream:
         stream.write('<?xml version="1.0" encoding="UTF-8"?>\n')
         stream.write('<LandXML xmlns="http://www.landxml.org/schema/LandXML-1.2" version="1.2">\n')
-        stream.write(f"<Units>{_landxml_unit(wkt or '')}</Units>\n")
+        stream.write(f"<Units>{units}</Units>\n")
         if wkt:
             stream.write(f"<CoordinateSystem ogcWktCode={quoteattr(wkt)}/>\n")
         stream.write(f"<Application name={software}/>\n")
@@ -89,18 +99,64 @@ def write_landxml(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | N
         stream.write("</Faces>\n</Definition></Surface></Surfaces>\n</LandXML>\n")
 
 
-def _landxml_unit(wkt: str) -> str:
-    feet = re.search(r'UNIT\["([^"]*(?:foot|feet)[^"]*)"', wkt, re.IGNORECASE)
-    if feet is None:
-        return (
-            '<Metric linearUnit="meter" areaUnit="squareMeter" volumeUnit="cubicMeter" '
-            'temperatureUnit="celsius" pressureUnit="mmHG"/>'
-        )
-    unit = "USSurveyFoot" if "survey" in feet[1].lower() else "foot"
-    return (
-        f'<Imperial linearUnit="{unit}" areaUnit="squareFoot" volumeUnit="cubicFeet" '
-        'temperatureUnit="fahrenheit" pressureUnit="inHG"/>'
+def _landxml_unit(wkt: str, path: str | os.PathLike[str]) -> str:
+    metres = _metres_in_horizontal_unit(wkt)
+    for unit, length in (("meter", 1.0), ("kilometer", 1000.0)):
+        if abs(metres / length - 1) < 1e-9:
+            return (
+                f'<Metric linearUnit="{unit}" areaUnit="squareMeter" volumeUnit="cubicMeter" '
+                'temperatureUnit="celsius" pressureUnit="mmHG"/>'
+            )
+    # The two feet are 2 parts in a million apart, and definitions are rounded to a tenth of that.
+    for unit, length in (("USSurveyFoot", 1200 / 3937), ("foot", 0.3048)):
+        if abs(metres / length - 1) < 2e-7:
+            return (
+                f'<Imperial linearUnit="{unit}" areaUnit="squareFoot" volumeUnit="cubicFeet" '
+                'temperatureUnit="fahrenheit" pressureUnit="inHG"/>'
+            )
+    raise OutputFileError(
+        f"{path}: LandXML has no name for a unit of {metres:.10g} m, in which the CRS counts; "
+        "reproject the input, or write another format."
     )
+
+
+def _metres_in_horizontal_unit(wkt: str) -> float:
+    """Return the length in which a definition counts x and y; 1 where it tells none.
+
+    Of a compound CRS it is the projected part that counts.
+    """
+    start = re.search(
+        r"\b(?:PROJCS|PROJCRS|PROJECTEDCRS|LOCAL_CS|ENGCRS|ENGINEERINGCRS)\[", wkt, re.IGNORECASE
+    )
+    if start is None:
+        return 1.0
+    part = _bracketed(wkt[start.start() :])
+    # Those have units of their own: the angle, and the lengths of the projection's parameters.
+    for other in ("GEOGCS", "BASEGEOGCRS", "BASEGEODCRS", "CONVERSION", "PARAMETER"):
+        part = _without(part, other)
+    units = re.findall(r'\b(?:LENGTH)?UNIT\["[^"]*",\s*([-+.\deE]+)', part, re.IGNORECASE)
+    return float(units[-1]) if units else 1.0
+
+
+def _without(text: str, keyword: str) -> str:
+    """Return a definition without the elements of a keyword."""
+    while found := re.search(rf"\b{keyword}\[", text, re.IGNORECASE):
+        rest = text[found.start() :]
+        text = text[: found.start()] + rest[len(_bracketed(rest)) :]
+    return text
+
+
+def _bracketed(text: str) -> str:
+    """Return a text up to the bracket that closes its first one; quoted brackets do not count."""
+    depth, is_quoted = 0, False
+    for position, character in enumerate(text):
+        if character == '"':
+            is_quoted = not is_quoted
+        elif not is_quoted and character in "[]":
+            depth += 1 if character == "[" else -1
+            if depth == 0:
+                return text[: position + 1]
+    return text
 
 
 def write_dxf(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
@@ -122,7 +178,9 @@ def write_dxf(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
     space = document.modelspace()
     for a, b, c in mesh.vertices[mesh.faces].tolist():
         space.add_3dface([a, b, c, c], dxfattribs={"layer": "TERRAIN"})
-    document.saveas(path)
+    text = io.StringIO(newline="\n")
+    document.write(text)
+    write_text(path, text.getvalue())
 
 
 def _local_origin(mesh: TriangleMesh) -> NDArray[np.float64]:

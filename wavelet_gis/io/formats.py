@@ -1,9 +1,10 @@
 """The file formats, one row each; everything that lists or checks formats reads these tables.
 
-Another mesh format is a function ``write(path, mesh)`` and one row here: the commands' help, their
-checks, the dialogs in QGIS, the documentation's table and its test have it from there. Nothing is
-imported here, so that help and dialogs can list formats where no package is installed; a writer is
-therefore named, and loaded when it writes.
+Another mesh format is a function ``write(path, mesh)``, which writes by
+`wavelet_gis.io.read_back.recorded_stream`, and one row here: the commands' help, their checks, the
+dialogs in QGIS, the documentation's table and its test have it from there. Nothing is imported
+here, so that help and dialogs can list formats where no package is installed; a writer is therefore
+named, and loaded when it writes.
 """
 
 from __future__ import annotations

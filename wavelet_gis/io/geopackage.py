@@ -10,14 +10,18 @@ import itertools
 import os
 import sqlite3
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from urllib.parse import quote
 
 from wavelet_gis.errors import InputFileError, OutputFileError
+from wavelet_gis.io.names import MAX_DATABASE_NAME
 
 __all__ = [
     "LayerStyle",
+    "check_database",
+    "check_rows",
     "create_geopackage",
     "open_for_writing",
     "open_stranger",
@@ -180,7 +184,12 @@ def open_stranger(
         raise InputFileError(f"{name}: there is no such file; check the path.")
     if not os.path.isfile(name):
         raise InputFileError(f"{name}: this is a pipe or a device; give a pyramid file.")
-    uri = Path(name).absolute().as_uri() + "?mode=ro"
+    if len(os.fsencode(os.path.abspath(name))) > MAX_DATABASE_NAME:
+        raise InputFileError(
+            f"{os.path.basename(name)}: SQLite opens no file by a path of more than "
+            f"{MAX_DATABASE_NAME} bytes; move it to a folder nearer to the root."
+        )
+    uri = "file:" + quote(os.fsencode(Path(name).absolute())) + "?mode=ro"
     try:
         connection = sqlite3.connect(uri, uri=True, timeout=PATIENCE_SECONDS)
         try:
@@ -251,6 +260,36 @@ def _reading_fault(name: str, error: Exception) -> str:
         f"this is no GeoPackage, or a damaged one ({_short(error)}); give a pyramid file that "
         "an analysis made"
     )
+
+
+def check_database(path: str | os.PathLike[str]) -> None:
+    """Read a GeoPackage back by SQLite's own check.
+
+    Raises
+    ------
+    InputFileError, OutputFileError
+        With what is wrong.
+    """
+    with open_stranger(path, max_instructions=None) as connection:
+        verdict = str(connection.execute("PRAGMA quick_check(1)").fetchone()[0])
+    if verdict != "ok":
+        raise OutputFileError(f"SQLite finds {verdict}")
+
+
+def check_rows(path: str | os.PathLike[str], n_rows: Mapping[str, int]) -> None:
+    """Read a GeoPackage back by the number of rows that its tables must have.
+
+    Raises
+    ------
+    InputFileError, OutputFileError
+        With what is wrong.
+    """
+    with open_stranger(path, max_instructions=None) as connection:
+        for table, n in n_rows.items():
+            quoted = '"' + table.replace('"', '""') + '"'
+            (there,) = connection.execute(f"SELECT COUNT(*) FROM {quoted}").fetchone()  # nosec B608
+            if there != n:
+                raise OutputFileError(f"table {table} holds {there} rows of {n}")
 
 
 def table_names(connection: sqlite3.Connection) -> set[str]:

@@ -18,6 +18,7 @@ import wavelet_core
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.formats import MESH_SUFFIXES, any_of, mesh_format
+from wavelet_gis.io.read_back import recorded_stream, write_text
 
 __all__ = ["write_2dm", "write_mesh", "write_obj", "write_ply"]
 
@@ -33,7 +34,7 @@ def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None
     path : path
         Whose suffix is one of `wavelet_gis.io.formats.MESH_FORMATS`.
     mesh : TriangleMesh
-        In the coordinates to be written.
+        In the coordinates to be written; see `wavelet_gis.products.plane_mesh`.
     wkt : str, optional
         The CRS, for a ``.prj`` beside a 2DM file and for LandXML; the other formats know none.
 
@@ -55,7 +56,7 @@ def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None
     else:
         writer(path, mesh)
     if wkt and row.has_prj:
-        Path(path).with_suffix(".prj").write_text(wkt, encoding="utf-8")
+        write_text(Path(path).with_suffix(".prj"), wkt)
 
 
 def write_ply(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
@@ -73,7 +74,7 @@ def write_ply(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
     ]
     faces = np.empty(mesh.n_faces, dtype=[("n", "u1"), ("ids", "<i4", (3,))])
     faces["n"], faces["ids"] = 3, mesh.faces
-    with open(path, "wb") as stream:
+    with recorded_stream(path) as stream:
         stream.write(("\n".join(header) + "\n").encode("ascii"))
         stream.write(np.hstack([mesh.vertices, mesh.attributes]).astype("<f8").tobytes())
         stream.write(faces.tobytes())
@@ -81,7 +82,7 @@ def write_ply(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
 
 def write_obj(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
     """Write a Wavefront OBJ; it knows no attributes, and counts vertices from 1."""
-    with open(path, "w", encoding="ascii", newline="\n") as stream:
+    with recorded_stream(path) as stream:
         stream.write(f"# {_software()}\n")
         _write_lines(stream, "v %.15g %.15g %.15g\n", mesh.vertices)
         _write_lines(stream, "f %d %d %d\n", mesh.faces + 1)
@@ -89,7 +90,7 @@ def write_obj(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
 
 def write_2dm(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
     """Write an SMS 2DM mesh, which QGIS and hydraulic models read; ids count from 1."""
-    with open(path, "w", encoding="ascii", newline="\n") as stream:
+    with recorded_stream(path) as stream:
         stream.write("MESH2D\n")
         ids = np.arange(1, mesh.n_faces + 1)
         # The last number is the material.

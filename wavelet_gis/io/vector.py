@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable
+from functools import partial
 
 from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.errors import CrsWarning, OutputFileError
-from wavelet_gis.io.geopackage import LayerStyle, write_styles
+from wavelet_gis.io.geopackage import LayerStyle, check_database, check_rows, write_styles
+from wavelet_gis.io.names import plain_folder
+from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.products.layers import Layer
 
 __all__ = ["add_layers"]
@@ -39,18 +42,23 @@ def add_layers(
         When GDAL cannot write them.
     """
     styles: list[LayerStyle] = []
+    n_rows: dict[str, int] = {}
     n_features = 0
     crs = _crs_for_gdal(system)
     for layer in layers:
-        _write_layer(path, layer, crs)
+        with plain_folder(path) as name:
+            _write_layer(name, layer, crs)
+        n_rows[layer.name] = len(layer.geometry)
         styles.append((layer.name, layer.title, layer.style, layer.description))
         n_features += len(layer.geometry)
     write_styles(path, styles)
+    read_back(path, check_database)
+    read_back(path, partial(check_rows, n_rows={**n_rows, **_index_rows(n_rows)}))
     return n_features
 
 
 def _write_layer(path: str | os.PathLike[str], layer: Layer, crs: str | None) -> None:
-    from pyogrio.errors import DataLayerError, DataSourceError
+    from pyogrio.errors import DataLayerError, DataSourceError, FeatureError
     from pyogrio.raw import write
 
     with warnings.catch_warnings():
@@ -73,10 +81,18 @@ def _write_layer(path: str | os.PathLike[str], layer: Layer, crs: str | None) ->
                 },
                 dataset_options={} if os.path.exists(path) else {"VERSION": "1.2"},
             )
-        except (DataSourceError, DataLayerError) as error:
+        except (DataSourceError, DataLayerError, FeatureError) as error:
+            # GDAL quotes whole schemas before it comes to the point.
+            reason = str(error).rsplit("failed: ", 1)[-1]
             raise OutputFileError(
-                f"{path}: layer {layer.name} cannot be written ({error}); is the disk full?"
+                f"layer {layer.name} cannot be written ({reason}); "
+                f"{room_at(os.path.dirname(os.path.realpath(path)))}."
             ) from error
+
+
+def _index_rows(n_rows: dict[str, int]) -> dict[str, int]:
+    """Return the rows that the spatial indices must have, which GDAL fills when it closes."""
+    return {f"rtree_{table}_geom": n for table, n in n_rows.items()}
 
 
 def _crs_for_gdal(system: CoordinateSystem) -> str | None:

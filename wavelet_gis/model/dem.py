@@ -25,7 +25,18 @@ from wavelet_gis.model.exact_restore import (
     number_dtype,
 )
 
-__all__ = ["Dem", "GridGeometry", "InputGrid", "RasterOrigin", "dem_mesh", "grid_bounds"]
+__all__ = [
+    "Dem",
+    "GridGeometry",
+    "InputGrid",
+    "RasterOrigin",
+    "dem_mesh",
+    "grid_bounds",
+    "require_sound",
+]
+
+#: Elevations beyond this, in any unit, leave no digits for geometry.
+_LARGEST_ELEVATION = 1e30
 
 #: Rows or columns; GDAL knows no larger rasters.
 _LARGEST_SIDE = 2**31 - 1
@@ -52,6 +63,22 @@ class GridGeometry:
     def is_axis_aligned(self) -> bool:
         """Whether rows run along x and columns along y."""
         return self.transform[1] == 0.0 and self.transform[3] == 0.0
+
+    @property
+    def fault(self) -> str:
+        """What is wrong with the transform; empty when it places every cell apart."""
+        a, b, _, d, e, _ = self.transform
+        if not all(math.isfinite(value) for value in self.transform):
+            return "holds numbers that are not finite"
+        # A map of the plane onto a line but for rounding is no better than an exact one.
+        if abs(a * e - b * d) <= 1e-12 * (abs(a * e) + abs(b * d)):
+            return "maps all cells onto a line"
+        x_min, y_min, x_max, y_max = grid_bounds(self)
+        step = min(max(abs(a), abs(d)), max(abs(b), abs(e)))
+        reach = max(abs(x_min), abs(y_min), abs(x_max), abs(y_max))
+        if not math.isfinite(reach) or reach > 1e15 or step < 1e-12 * reach:
+            return "has cells too small or too far away to be told apart"
+        return ""
 
     def centres(
         self, columns: NDArray[Any], rows: NDArray[Any]
@@ -116,12 +143,14 @@ class InputGrid(NamedTuple):
     valid : (n_rows, n_columns) bool, the cells with data; the i-th of them is vertex i
     dtype : numpy dtype of the stored numbers
     nodata : int, float or None
+    is_scaled : bool, whether the stored numbers are no elevations but have a scale and an offset
     """
 
     geometry: GridGeometry
     valid: NDArray[np.bool_]
     dtype: np.dtype[Any]
     nodata: float | int | None
+    is_scaled: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +224,8 @@ class RasterOrigin:
     @property
     def grid(self) -> InputGrid:
         """The grid that came in."""
-        return InputGrid(self.geometry, self.valid, self.dtype, self.nodata)
+        is_scaled = (self.scale, self.offset) != (1.0, 0.0)
+        return InputGrid(self.geometry, self.valid, self.dtype, self.nodata, is_scaled)
 
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> Dem:
         """Return the DEM of the finest mesh of a pyramid.
@@ -303,6 +333,49 @@ class RasterOrigin:
         return cls(
             geometry, nodata, scale, offset, profile, dtype, valid, holes, corrections, digest
         )
+
+
+def require_sound(dem: Dem, name: str) -> None:
+    """Refuse a DEM of which no pyramid could be restored.
+
+    Parameters
+    ----------
+    dem : Dem
+        As it came.
+    name : str
+        Of the file, for messages.
+
+    Raises
+    ------
+    InputFileError
+        A transform that does not place the cells, a scale of 0, a scale or offset that is not
+        finite, or elevations beyond all measure.
+    """
+    fault = dem.geometry.fault
+    if fault:
+        raise InputFileError(
+            f"{name}: the geotransform {dem.geometry.transform} {fault}; georeference the raster "
+            "first (gdal_translate -a_ullr)."
+        )
+    if not (math.isfinite(dem.scale) and math.isfinite(dem.offset)) or dem.scale == 0.0:
+        raise InputFileError(
+            f"{name}: the band has the scale {dem.scale} and the offset {dem.offset}, which give "
+            "no elevations; set them right first (gdal_edit.py -scale 1 -offset 0)."
+        )
+    if not dem.valid.any():
+        return
+    values = dem.values[dem.valid]
+    for raw in (float(values.min()), float(values.max())):
+        elevation = raw * dem.scale + dem.offset
+        if not abs(elevation) < _LARGEST_ELEVATION:
+            raise InputFileError(
+                "{name}: an elevation is {elevation:.4g}; name the nodata value ({0} {raw!r}), or "
+                "set scale and offset of the band right.",
+                "nodata",
+                name=name,
+                elevation=elevation,
+                raw=raw,
+            )
 
 
 def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:

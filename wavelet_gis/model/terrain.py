@@ -9,11 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import MeshError, Pyramid, TriangleMesh, WaveletError
-from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame, vertical_unit_name, working_frame
+from wavelet_gis.crs.frame import (
+    CoordinateSystem,
+    LocalFrame,
+    assumed_vertical_unit,
+    vertical_unit_name,
+    working_frame,
+)
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
 from wavelet_gis.model.cloud import PointCloud, cloud_bounds
 from wavelet_gis.model.cloud_origin import cloud_mesh
-from wavelet_gis.model.dem import Dem, RasterOrigin, dem_mesh, grid_bounds
+from wavelet_gis.model.dem import Dem, RasterOrigin, dem_mesh, grid_bounds, require_sound
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.origin import Origin, Original
@@ -119,6 +125,7 @@ def terrain_of_dem(
     vertical_unit : str, optional
         Unit of z; see `wavelet_gis.crs.frame.working_frame` for what holds without it.
     """
+    require_sound(dem, name)
     if not dem.valid.any():
         raise InputFileError(
             f"{name}: every cell of the raster is nodata; check the band and the nodata value."
@@ -292,11 +299,20 @@ def frame_of_bounds(
             metres_north=frame.y_scale,
         )
     unit = vertical_unit or system.vertical_unit
-    if unit is None:
-        unit = "metre" if system.kind == "geographic" else "unit of x and y"
-    else:
-        unit = vertical_unit_name(unit)
-    if frame.z_scale != 1.0 and abs(frame.z_scale - 1.0) > 1e-5:
+    is_assumed = unit is None
+    unit = assumed_vertical_unit(system) if unit is None else vertical_unit_name(unit)
+    if is_assumed and system.kind == "projected" and frame.z_scale != 1.0:
+        warn(
+            UnitWarning,
+            "vertical_unit_assumed",
+            "{name}: x and y are in units of {metres:g} m and nothing tells the unit of z; it is "
+            "taken for the metre ({0} names another)",
+            "vertical_unit",
+            stacklevel=3,
+            name=name,
+            metres=system.horizontal_unit,
+        )
+    elif frame.z_scale != 1.0 and abs(frame.z_scale - 1.0) > 1e-5:
         warn(
             UnitWarning,
             "vertical_unit_converted",

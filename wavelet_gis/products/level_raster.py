@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_gis.model.attributes.categories import Categories, nearest_vertices
-from wavelet_gis.model.dem import Dem, GridGeometry
+from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.products.rasterise import geometry_over, rasterise
-from wavelet_gis.products.vertex_raster import point_cell_size
+from wavelet_gis.products.lone_vertices import fill_lone_cells
+from wavelet_gis.products.rasterise import rasterise
+from wavelet_gis.products.vertex_raster import grid_of
 
-__all__ = ["surface_dem", "surface_difference"]
+__all__ = ["surface_dem", "surface_difference", "tag_without_clash"]
 
 
 def surface_dem(
@@ -34,7 +38,7 @@ def surface_dem(
     cell_size : float, optional
         Of a grid over the mesh, in the input's unit of x and y. By default the grid of the raster
         that the pyramid was made from, or the spacing of its points; without either, the mean
-        spacing of the mesh's vertices.
+        spacing of the mesh's vertices. See `wavelet_gis.products.vertex_raster.grid_of`.
     attribute : str, optional
         What to evaluate instead of the elevation.
     categories : {"nearest", "number"}
@@ -44,8 +48,9 @@ def surface_dem(
     Returns
     -------
     Dem
-        Of 64-bit floats where the input was such a raster, else of 32-bit ones; cells that no face
-        covers hold the input's nodata value, or NaN.
+        Of 64-bit floats where the input was such a raster, else of 32-bit ones. A cell that no face
+        covers has the height of a vertex without faces in it; the others hold the input's nodata
+        value, or NaN where that would be an elevation.
 
     Raises
     ------
@@ -55,11 +60,8 @@ def surface_dem(
     in_file = geo.file_mesh(mesh, categories=categories)
     values = _attribute_values(in_file, attribute) if attribute else None
     given = geo.origin.grid
-    if given is not None and not cell_size:
-        geometry = given.geometry
-    else:
-        geometry = _geometry(in_file, cell_size or point_cell_size(geo))
-    grid = rasterise(in_file, geometry, values)
+    geometry = grid_of(geo, mesh, cell_size)
+    grid = fill_lone_cells(rasterise(in_file, geometry, values), in_file, geometry, values)
     if values is not None and attribute in geo.categories and categories == "nearest":
         rows, columns = np.nonzero(np.isfinite(grid))
         x, y = geometry.centres(columns, rows)
@@ -69,10 +71,9 @@ def surface_dem(
     if given is None or given.dtype != np.float64:
         grid = grid.astype(np.float32)
     covered = np.isfinite(grid)
-    tag = float("nan")
-    if given is not None and given.nodata is not None:
-        largest = float(np.finfo(grid.dtype).max)
-        tag = float(given.nodata) if abs(float(given.nodata)) <= largest else tag
+    # The input's tag stands for its stored numbers, which are no elevations where it has a scale.
+    wished = None if given is None or given.is_scaled else given.nodata
+    tag = tag_without_clash(grid, covered, wished)
     grid[~covered] = tag
     profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
     return Dem(grid, covered, geometry, tag, profile=profile)
@@ -99,11 +100,24 @@ def surface_difference(
     return Dem(values, valid, old.geometry, float("nan"), profile=old.profile)
 
 
-def _geometry(mesh: TriangleMesh, cell_size: float | None) -> GridGeometry:
-    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
-    area = (high[0] - low[0]) * (high[1] - low[1])
-    size = cell_size or float(np.sqrt(area / mesh.n_vertices))
-    return geometry_over((low[0], low[1], high[0], high[1]), size)
+def tag_without_clash(
+    values: NDArray[np.floating[Any]], covered: NDArray[np.bool_], wished: float | int | None
+) -> float:
+    """Return the nodata value for a raster of floats: the wished one, or NaN where it is data.
+
+    Parameters
+    ----------
+    values : ndarray of float
+        The raster.
+    covered : ndarray of bool
+        Its cells with data.
+    wished : float, int or None
+        What the input had.
+    """
+    if wished is None or abs(float(wished)) > float(np.finfo(values.dtype).max):
+        return float("nan")
+    is_clash = bool((values[covered] == values.dtype.type(wished)).any())
+    return float("nan") if is_clash else float(wished)
 
 
 def _attribute_values(mesh: TriangleMesh, attribute: str) -> np.ndarray:

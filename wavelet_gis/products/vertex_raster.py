@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.dem import GridGeometry
+from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.products.lone_vertices import fill_lone_cells
 from wavelet_gis.products.rasterise import geometry_over, rasterise
 
-__all__ = ["Bands", "grid_of", "label_band", "point_cell_size", "value_bands", "write_bands"]
+__all__ = ["Bands", "grid_of", "label_band", "point_cell_size", "value_bands"]
 
 #: Stored in cells without a label.
 NO_LABEL = 255
@@ -57,9 +58,18 @@ def grid_of(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None = None)
         In the working frame.
     cell_size : float, optional
         In the input's unit of x and y; by default, for points, their spacing.
+
+    Notes
+    -----
+    A raster's own cell size gives its own grid, to the cell; another one a grid over the raster's
+    cells, edge to edge, so that cells of twice the size hold four of them.
     """
-    if geo.origin.grid is not None and cell_size is None:
-        return geo.origin.grid.geometry
+    if geo.origin.grid is not None:
+        own = geo.origin.grid.geometry
+        if not cell_size or _has_cell_size(own, cell_size):
+            return own
+        return geometry_over(grid_bounds(own), cell_size)
+    cell_size = cell_size or None
     vertices = geo.frame.to_file(mesh.vertices)
     (x_min, y_min, _), (x_max, y_max, _) = vertices.min(axis=0), vertices.max(axis=0)
     if cell_size is None:
@@ -111,7 +121,9 @@ def value_bands(
     else:
         in_file = geo.file_mesh(mesh)
         for band, column in zip(values, columns.T, strict=True):
-            band[:] = rasterise(in_file, geometry, column)
+            band[:] = fill_lone_cells(
+                rasterise(in_file, geometry, column), in_file, geometry, column
+            )
     return Bands(values, tuple(names), geometry)
 
 
@@ -156,7 +168,8 @@ def label_band(
         from scipy.spatial import cKDTree
 
         in_file = geo.file_mesh(mesh)
-        rows, columns = np.nonzero(np.isfinite(rasterise(in_file, geometry)))
+        covered = fill_lone_cells(rasterise(in_file, geometry), in_file, geometry)
+        rows, columns = np.nonzero(np.isfinite(covered))
         x, y = geometry.centres(columns, rows)
         local = np.column_stack([geo.frame.local_x(x), geo.frame.local_y(y)])
         if len(local):
@@ -165,48 +178,17 @@ def label_band(
     return Bands(values, (name,), geometry)
 
 
-def write_bands(path: str | os.PathLike[str], bands: Bands, wkt: str | None) -> None:
-    """Write bands to a GeoTIFF, each with its name.
-
-    Parameters
-    ----------
-    path : path
-        A file that does not exist yet.
-    bands : Bands
-        What to write.
-    wkt : str or None
-        The CRS.
-    """
-    import rasterio
-    from rasterio.transform import Affine
-
-    n_bands, n_rows, n_columns = bands.values.shape
-    with rasterio.open(
-        os.fspath(path),
-        "w",
-        driver="GTiff",
-        count=n_bands,
-        height=n_rows,
-        width=n_columns,
-        dtype=bands.values.dtype.name,
-        crs=wkt,
-        transform=Affine(*bands.geometry.transform),
-        nodata=bands.nodata,
-        compress="deflate",
-        tiled=True,
-        predictor=3 if bands.values.dtype.kind == "f" else 1,
-        bigtiff="if_safer",
-    ) as dataset:
-        for k, (band, name) in enumerate(zip(bands.values, bands.names, strict=True), start=1):
-            dataset.write(band, k)
-            dataset.set_band_description(k, name)
-
-
 def _valid_cells(
     geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None
 ) -> NDArray[np.bool_] | None:
     """Return the cells of the input's own grid, if they are the vertices of the mesh one by one."""
     grid = geo.origin.grid
-    if grid is None or cell_size is not None:
+    if grid is None or (cell_size and not _has_cell_size(grid.geometry, cell_size)):
         return None
     return grid.valid if mesh.n_vertices == geo.origin.n_vertices else None
+
+
+def _has_cell_size(geometry: GridGeometry, cell_size: float) -> bool:
+    a, b, _, d, e, _ = geometry.transform
+    sides = (math.hypot(a, d), math.hypot(b, e))
+    return all(math.isclose(side, cell_size, rel_tol=1e-6) for side in sides)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ import numpy as np
 from wavelet_core.errors import MissingDependencyError
 from wavelet_core.features.spectrum import STAYS, vertex_details
 from wavelet_core.lifting.spacings import level_spacings
+from wavelet_gis.io.read_back import write_bytes
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["plot_details"]
@@ -79,7 +82,9 @@ def plot_details(path: str | os.PathLike[str], geo: GeoPyramid) -> None:
         axes.ticklabel_format(useOffset=False, style="plain")
         axes.tick_params(labelsize=7)
         axes.tick_params(axis="x", labelrotation=30)
-    figure.savefig(os.fspath(path), dpi=150)
+    picture = io.BytesIO()
+    figure.savefig(picture, format=Path(path).suffix[1:].lower(), dpi=150)
+    write_bytes(path, picture.getvalue())
 
 
 def _draw_terrain(figure: Any, axes: Any, x: Any, y: Any, z: Any, faces: Any) -> None:

@@ -26,7 +26,7 @@ from wavelet_gis.products.vertex_tables import (
     shape_layer,
     vertex_layer,
 )
-from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, require_levels
 
 __all__ = ["QUANTITIES", "Details", "LevelDetails", "Quantity", "details"]
 
@@ -136,7 +136,7 @@ class Details:
         """
         suffix = suffix_of(path)
         if suffix in RASTER_SUFFIXES:
-            from wavelet_gis.products.vertex_raster import write_bands
+            from wavelet_gis.io.raster import write_bands
 
             bands = self.raster(cell_size, progress)
             write_bands(path, bands, self.geo.system.wkt)
@@ -177,7 +177,8 @@ def details(
     Raises
     ------
     OptionError
-        Another quantity, or a level for anything but the shape.
+        Another quantity, a level for anything but the shape, or details of a pyramid without
+        levels.
     """
     geo = pyramid_of(data)
     if what not in QUANTITIES:
@@ -188,6 +189,8 @@ def details(
             known=", ".join(QUANTITIES),
         )
     check_level_of(what, level)
+    if what not in ("shape", "level"):
+        require_levels(geo)
     chosen = geo.pyramid.n_levels if level is None else level
     return Details(geo, what, chosen, channel)
 

@@ -16,6 +16,7 @@ from wavelet_core.mesh.location import Cover, surface_errors
 from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
 from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.products.lone_vertices import lone_vertices
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
 
@@ -70,6 +71,7 @@ class Surface:
         cell_size: float | None = None,
         attribute: str | None = None,
         cog: bool = False,
+        to_crs: str | None = None,
         categories: Categories = "nearest",
     ) -> dict[str, int]:
         """Write it as a TIN or a raster; see `wavelet_gis.workflows.save.save`.
@@ -80,6 +82,9 @@ class Surface:
             A file that does not exist yet.
         cell_size, attribute, cog
             Of a raster; see `wavelet_gis.workflows.save.write_surface_raster`.
+        to_crs : str, optional
+            Of a mesh file: a projected CRS, or ``"auto"`` for the UTM zone; see
+            `wavelet_gis.products.plane_mesh.plane_mesh` for what holds without it.
         categories : {"nearest", "number"}
             See `wavelet_gis.model.geo_pyramid.GeoPyramid.file_mesh`.
 
@@ -89,7 +94,12 @@ class Surface:
             Rows, columns and cells without data of a raster; empty for a TIN.
         """
         check_surface_output(
-            path, overwrite=True, cell_size=cell_size, attribute=attribute, cog=cog
+            path,
+            overwrite=True,
+            cell_size=cell_size,
+            attribute=attribute,
+            cog=cog,
+            to_crs=to_crs,
         )
         if suffix_of(path) in RASTER_SUFFIXES:
             return write_surface_raster(
@@ -102,7 +112,7 @@ class Surface:
                 categories=categories,
             )
         name = f"level_{self.level:02d}"
-        write_tin(path, self.geo, self.mesh, self.vertex_ids, name, categories)
+        write_tin(path, self.geo, self.mesh, self.vertex_ids, name, to_crs, categories)
         return {}
 
     def figures(self) -> dict[str, Any]:
@@ -118,6 +128,7 @@ def measured(
     points: NDArray[np.float64],
     z_scale: float,
     cover: Cover | None = None,
+    vertex_ids: NDArray[np.int64] | None = None,
 ) -> SurfaceErrors:
     """Return the vertical errors of a surface.
 
@@ -131,8 +142,14 @@ def measured(
         Working units in one of the input's unit of z.
     cover : Cover, optional
         Of the points on the mesh, where it is known already.
+    vertex_ids : (n_vertices,) int64, optional
+        Which of the points the vertices are: one without a triangle is kept, and its height with
+        it.
     """
     errors = surface_errors(mesh, points, cover) / z_scale
+    if vertex_ids is not None:
+        lone = lone_vertices(mesh)
+        errors[vertex_ids[lone]] = (mesh.vertices[lone, 2] - points[vertex_ids[lone], 2]) / z_scale
     covered = errors[np.isfinite(errors)]
     return SurfaceErrors(
         float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,

@@ -18,7 +18,7 @@ from wavelet_gis.model.attributes.categories import category_gains
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.progress import part_of
-from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, require_levels
 from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
 from wavelet_gis.workflows.save import Layers, write_pyramid_file
 
@@ -155,8 +155,8 @@ def filter_pyramid(
     Raises
     ------
     OptionError
-        Nothing to do, bounds in the wrong order, levels or channels that are not there, kinds of
-        noise without denoising; nothing has been computed yet.
+        Nothing to do, a pyramid without levels, bounds in the wrong order, levels or channels that
+        are not there, kinds of noise without denoising; nothing has been computed yet.
     Cancelled
         ``progress`` returned False.
     """
@@ -172,6 +172,7 @@ def filter_pyramid(
         raise OptionError(
             "{0}, {1} and {2} tell of noise; give {3} too.", *NOISE_OPTIONS, "denoise"
         )
+    require_levels(geo)
     wanted = chosen_gains(geo, single, levels=levels, metres=metres)
     changed, sigmas = geo, dict[str, float]()
     finest_before = geo.pyramid.synthesise()

@@ -13,8 +13,8 @@ import numpy as np
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError, PyramidError
-from wavelet_gis.crs.frame import CoordinateSystem, vertical_unit_name
-from wavelet_gis.errors import CrsError, InputFileError
+from wavelet_gis.crs.frame import MAX_DISTORTION, CoordinateSystem, vertical_unit_name
+from wavelet_gis.errors import CrsError, CrsWarning, InputFileError
 from wavelet_gis.io.formats import (
     CLOUD_SUFFIXES,
     POINT_TABLE_SUFFIXES,
@@ -22,15 +22,19 @@ from wavelet_gis.io.formats import (
     VECTOR_SUFFIXES,
     suffix_of,
 )
+from wavelet_gis.io.names import readable
 from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.origin import ORIGINS
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem, terrain_of_mesh
 from wavelet_gis.model.tin import frame_of_coordinates, terrain_of_points, terrain_of_triangles
-from wavelet_gis.notes import collected
+from wavelet_gis.notes import collected, warn
 from wavelet_gis.workflows.analyse import Analysis
 
 __all__ = ["load", "open_data", "open_input", "open_terrain", "origin_kind"]
+
+#: Beyond it a plane is told to be untrue: the same error that a frame for degrees may have.
+LARGEST_SCALE_ERROR = MAX_DISTORTION
 
 #: How far cells may be from even spacing, in parts of one; single precision leaves that much.
 EVEN_SPACING = 1e-3
@@ -46,6 +50,8 @@ def open_terrain(
     class_channels: bool = False,
     crs: str | None = None,
     vertical_unit: str | None = None,
+    nodata: float | str | None = None,
+    offline: bool = False,
     keep_noise: bool = False,
     keep_withheld: bool = False,
     duplicates: str = "lowest",
@@ -68,6 +74,8 @@ def open_terrain(
         Instead of the CRS in the file.
     vertical_unit : str, optional
         Unit of z, instead of what the file tells.
+    nodata, offline
+        Of a raster; see `wavelet_gis.io.raster.read_dem`.
     duplicates, max_edge, concave
         Of a point cloud; see `wavelet_gis.model.cloud_origin.cloud_mesh`.
 
@@ -93,6 +101,10 @@ def open_terrain(
             raise InputFileError(
                 "{path}: a point cloud has no bands; leave {0} out.", "band", path=path
             )
+        if nodata is not None:
+            raise InputFileError(
+                "{path}: a point cloud has no nodata; leave {0} out.", "nodata", path=path
+            )
         cloud, place = read_cloud(
             path,
             attributes=attributes,
@@ -105,7 +117,7 @@ def open_terrain(
             cloud = one_channel_per_category(cloud)
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
-            os.fspath(path),
+            readable(path),
             cloud,
             system,
             vertical_unit or place.vertical_unit,
@@ -126,17 +138,39 @@ def open_terrain(
             "concave",
             path=path,
         )
-    if attributes or classes is not None:
+    if attributes or classes is not None or class_channels:
         raise InputFileError(
-            "{path}: {0} and {1} are for point clouds; leave them out for a raster.",
+            "{path}: {0}, {1} and {2} are for point clouds; leave them out for a raster.",
             "attributes",
             "classes",
+            "class_channels",
             path=path,
         )
-    dem, place = read_dem(path, band=band)
+    dem, place = read_dem(path, band=band, nodata=nodata, offline=offline)
     system = override or coordinate_system(place.wkt)
     unit = vertical_unit or _known_unit(place.vertical_unit)
-    return terrain_of_dem(os.fspath(path), dem, system, unit)
+    return terrain_of_dem(readable(path), dem, system, unit)
+
+
+def _tell_of_scale(terrain: Terrain) -> None:
+    """Warn where the plane is not true to scale, as Web Mercator far from the equator."""
+    from wavelet_gis.crs.projection import scale_at
+
+    low, high = terrain.mesh.vertices.min(axis=0), terrain.mesh.vertices.max(axis=0)
+    x, y = (low[:2] + high[:2]) / 2
+    scale = scale_at(terrain.system, float(x), float(y))
+    if abs(scale - 1.0) > LARGEST_SCALE_ERROR:
+        how = f"{scale:.3g} times too long" if scale > 1 else f"{1 / scale:.3g} times too short"
+        warn(
+            CrsWarning,
+            "plane_not_true_to_scale",
+            "{name}: distances in {crs} are {how} here, and slopes and areas wrong with them; "
+            "reproject the input, to its UTM zone for instance",
+            stacklevel=3,
+            name=terrain.name,
+            crs=terrain.system.name,
+            how=how,
+        )
 
 
 def _known_unit(unit: str | None) -> str | None:
@@ -185,7 +219,9 @@ def open_data(
             return load(data)
         return open_input(data, layer=layer, z_field=z_field, **options)
     with collected() as notes:
-        return _terrain_of_object(data, z_field, options).with_notes(notes)
+        terrain = _terrain_of_object(data, z_field, options)
+        _tell_of_scale(terrain)
+    return terrain.with_notes(notes)
 
 
 def open_input(
@@ -222,7 +258,8 @@ def open_input(
             terrain = _raster_or_vector(path, layer, z_field, options)
         else:
             terrain = open_terrain(path, **options)
-        return terrain.with_notes(notes)
+        _tell_of_scale(terrain)
+    return terrain.with_notes(notes)
 
 
 def load(path: str | os.PathLike[str]) -> Analysis:
@@ -240,7 +277,7 @@ def load(path: str | os.PathLike[str]) -> Analysis:
     PyramidError
         When its parts are damaged or do not fit together.
     """
-    from wavelet_gis.io.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
     return Analysis(read_pyramid(path))
 
@@ -260,7 +297,7 @@ def origin_kind(path: str | os.PathLike[str]) -> str:
     PyramidError
         When it claims a kind that is none of ours.
     """
-    from wavelet_gis.io.pyramid_file import read_summary
+    from wavelet_gis.io.pyramid.pyramid_file import read_summary
 
     source = read_summary(path).get("source")
     kind = source.get("kind") if isinstance(source, dict) else None
@@ -272,7 +309,7 @@ def origin_kind(path: str | os.PathLike[str]) -> str:
 
 
 def _holds_pyramid(path: str | os.PathLike[str]) -> bool:
-    from wavelet_gis.io.pyramid_file import read_summary
+    from wavelet_gis.io.pyramid.pyramid_file import read_summary
 
     try:
         read_summary(path)

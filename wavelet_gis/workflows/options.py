@@ -22,6 +22,7 @@ __all__ = [
     "note_moved_outline",
     "note_unreached_size",
     "pyramid_of",
+    "require_levels",
     "require_terrain",
     "working_rules",
 ]
@@ -183,6 +184,15 @@ def pyramid_of(data: HoldsPyramid | GeoPyramid) -> GeoPyramid:
         f"a {type(data).__name__} is not a pyramid; give what 'wavelet_gis.analyse' or "
         "'wavelet_gis.load' returns."
     )
+
+
+def require_levels(geo: GeoPyramid) -> None:
+    """Raise `OptionError` unless the pyramid has levels, and so details."""
+    if geo.pyramid.n_levels == 0:
+        raise OptionError(
+            "the pyramid has no levels and so no details; analyse the input with more levels (a "
+            "surface of a few points has none to give)."
+        )
 
 
 def require_terrain(data: object) -> None:

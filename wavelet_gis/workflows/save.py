@@ -92,6 +92,7 @@ def check_surface_output(
     cell_size: float | None = None,
     attribute: str | None = None,
     cog: bool = False,
+    to_crs: str | None = None,
 ) -> None:
     """Refuse, before the long work, an output that a surface cannot be written to.
 
@@ -103,13 +104,15 @@ def check_surface_output(
         See `wavelet_gis.io.atomic.check_output`.
     cell_size, attribute, cog
         Options of a raster.
+    to_crs
+        Of a mesh file.
 
     Raises
     ------
     OutputFileError
         See `wavelet_gis.io.atomic.check_output`.
     OptionError
-        Options of a raster for an output that is not one.
+        Options of a raster, or of a mesh file, for an output that is not one.
     """
     suffixes = (PYRAMID_SUFFIX, *MESH_SUFFIXES, *RASTER_SUFFIXES)
     check_output(path, overwrite=overwrite, suffixes=suffixes, inputs=inputs)
@@ -120,6 +123,10 @@ def check_surface_output(
             "cell_size",
             "attribute",
             "cog",
+        )
+    if to_crs and suffix_of(path) not in MESH_SUFFIXES:
+        raise OptionError(
+            "{0} is for mesh files; give an output such as .ply, or leave it out.", "to_crs"
         )
 
 
@@ -144,7 +151,7 @@ def write_pyramid_file(
     OutputFileError
         A name that does not end in ``.gpkg``.
     """
-    from wavelet_gis.io.pyramid_file import write_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
 
     check_output(path, overwrite=True, suffixes=(PYRAMID_SUFFIX,))
     write_pyramid(path, geo, progress)
@@ -163,6 +170,7 @@ def write_tin(
     mesh: TriangleMesh,
     vertex_ids: NDArray[np.int64],
     name: str,
+    to_crs: str | None = None,
     categories: Categories = "nearest",
 ) -> None:
     """Write a mesh of a pyramid as GeoPackage layers or as a mesh file, by the suffix.
@@ -179,6 +187,9 @@ def write_tin(
         Ids of its vertices in the input.
     name : str
         What the layers' names begin with.
+    to_crs : str, optional
+        Of a mesh file; see `wavelet_gis.products.plane_mesh.plane_mesh`, which notes what is other
+        than in the input.
     categories : {"nearest", "number"}
         See `wavelet_gis.model.geo_pyramid.GeoPyramid.file_mesh`.
     """
@@ -189,8 +200,10 @@ def write_tin(
         add_layers(path, tin_layers(geo, mesh, vertex_ids, name, categories), geo.system)
     else:
         from wavelet_gis.io import meshes
+        from wavelet_gis.products.plane_mesh import plane_mesh
 
-        meshes.write_mesh(path, geo.file_mesh(mesh, categories=categories), geo.system.wkt)
+        placed = plane_mesh(geo, mesh, to_crs, categories)
+        meshes.write_mesh(path, placed.mesh, placed.system.wkt)
 
 
 def write_surface_raster(

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from wavelet_core.errors import PyramidError
-from wavelet_gis.io import array_codec
-from wavelet_gis.io.array_codec import ArrayHeader, decode_array, encode_array, header_of
+from wavelet_gis.io.pyramid import array_codec
+from wavelet_gis.io.pyramid.array_codec import ArrayHeader, decode_array, encode_array, header_of
 
 ANY_ARRAY = st.sampled_from(["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"]).flatmap(
     lambda code: hnp.arrays(code, hnp.array_shapes(min_dims=1, max_dims=2, min_side=0, max_side=30))

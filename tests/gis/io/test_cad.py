@@ -46,7 +46,8 @@ def test_glb_places_the_terrain_and_turns_z_up(mesh, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("wkt", "unit"), [(None, "meter"), (FOOT_WKT, "USSurveyFoot"), ('X[UNIT["foot",1]]', "foot")]
+    ("wkt", "unit"),
+    [(None, "meter"), (FOOT_WKT, "USSurveyFoot"), ('LOCAL_CS["x",UNIT["foot",0.3048]]', "foot")],
 )
 def test_landxml_is_northing_first_and_names_its_unit(mesh, tmp_path, wkt, unit):
     write_mesh(tmp_path / "a.xml", mesh, wkt)

@@ -56,8 +56,9 @@ def test_the_page_on_formats_has_the_rows_of_the_table():
 def test_a_format_is_one_function_and_one_row(tmp_path, monkeypatch):
     """A new row is written by its suffix, listed in messages and taken by the commands' checks."""
     (tmp_path / "my_format.py").write_text(
+        "from wavelet_gis.io.read_back import recorded_stream\n"
         "def write_off(path, mesh):\n"
-        "    with open(path, 'w') as stream:\n"
+        "    with recorded_stream(path) as stream:\n"
         "        stream.write(f'OFF {mesh.n_vertices} {mesh.n_faces}')\n"
     )
     script = tmp_path / "try_it.py"

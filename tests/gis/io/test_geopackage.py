@@ -15,7 +15,7 @@ from wavelet_gis.io.geopackage import (
     table_names,
     write_styles,
 )
-from wavelet_gis.io.pyramid_file import read_pyramid, read_summary
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary
 
 
 def test_an_empty_one_is_valid(tmp_path, validate_gpkg):

@@ -17,7 +17,7 @@ from wavelet_core import analyse
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.las import read_cloud, write_cloud
 from wavelet_gis.io.las.layout import RECORD_LENGTHS, read_layout
-from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.workflows.open import open_terrain
 
 HEADER_SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}

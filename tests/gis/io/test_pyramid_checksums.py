@@ -14,10 +14,10 @@ from tools.pyramid_surgery import STRIP, operate
 
 from wavelet_core.errors import PyramidError
 from wavelet_gis.errors import OutputFileError
-from wavelet_gis.io import pyramid_file
-from wavelet_gis.io.array_codec import encode_array
-from wavelet_gis.io.array_tables import StoredArrays, read_entries
-from wavelet_gis.io.pyramid_file import read_pyramid, read_summary, write_pyramid
+from wavelet_gis.io.pyramid import pyramid_file
+from wavelet_gis.io.pyramid.array_codec import encode_array
+from wavelet_gis.io.pyramid.array_tables import StoredArrays, read_entries
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary, write_pyramid
 
 
 @pytest.fixture(params=["raster", "cloud"])
@@ -170,7 +170,7 @@ def test_a_pyramid_that_its_reader_refuses_is_not_called_written(raster_record, 
     steps[1] = type(steps[1])(**{**{n: getattr(steps[1], n) for n in ("odd", "indptr", "indices",
                                  "weights", "details")}, "target": target})  # fmt: skip
     broken = raster_record.with_pyramid(pyramid.with_parts(steps=tuple(steps)), "broken")
-    with pytest.raises(OutputFileError, match=r"does not take it .*step 1: a target"):
+    with pytest.raises(OutputFileError, match=r"does not take it: .*step 1: a target"):
         write_pyramid(tmp_path / "a.gpkg", broken)
 
 
@@ -178,9 +178,9 @@ def test_what_the_disk_changes_while_writing_is_seen(raster_record, tmp_path, mo
     path = tmp_path / "a.gpkg"
     original = pyramid_file._read_back
 
-    def after_damage(*arguments):
+    def after_damage(*arguments, **others):
         assert with_one_bit_changed(path, "steps/0001/weights")
-        original(*arguments)
+        original(*arguments, **others)
 
     monkeypatch.setattr(pyramid_file, "_read_back", after_damage)
     with pytest.raises(OutputFileError, match="steps/0001/weights: its checksum is wrong"):

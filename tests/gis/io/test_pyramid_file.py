@@ -9,7 +9,7 @@ import pytest
 from wavelet_core import Cancelled, TriangleMesh, analyse
 from wavelet_core.synthetic import hills
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
-from wavelet_gis.io.pyramid_file import read_pyramid, read_summary, write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary, write_pyramid
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -142,11 +142,11 @@ LIGHT = [
     "model.cloud",
     "model.cloud_origin",
     "model.exact_restore",
-    "io.array_codec",
-    "io.array_tables",
+    "io.pyramid.array_codec",
+    "io.pyramid.array_tables",
     "io.geopackage",
     "model.geo_pyramid",
-    "io.pyramid_file",
+    "io.pyramid.pyramid_file",
     "products.layers",
     "products.styles",
     "products.wkb",
@@ -174,7 +174,7 @@ class Absent:
 sys.meta_path.insert(0, Absent())
 for name in {LIGHT!r}:
     __import__("wavelet_gis." + name)
-from wavelet_gis.io.pyramid_file import read_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 from wavelet_gis.products.layers import coarse_layers
 geo = read_pyramid({str(raster_pyramid)!r})
 assert len(list(coarse_layers(geo))) == 2

@@ -14,7 +14,7 @@ from pyproj import CRS
 from wavelet_core import TriangleMesh, analyse
 from wavelet_core.synthetic import hills
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
-from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.notes import Note

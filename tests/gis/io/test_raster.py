@@ -114,6 +114,8 @@ def test_the_crs_comes_back(tmp_path, crs):
     transform = None
     if crs == "EPSG:4326":
         transform = rasterio.Affine(0.001, 0.0, 7.0, 0.0, -0.001, 44.0)
+    if crs == "EPSG:2056":
+        transform = rasterio.Affine(10.0, 0.0, 2600000.0, 0.0, -10.0, 1200000.0)
     source = write_tif(tmp_path / "a.tif", hills(), crs=crs, transform=transform)
     through_a_pyramid(source, tmp_path / "b.tif")
     assert_same_raster(source, tmp_path / "b.tif")

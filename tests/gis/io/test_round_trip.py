@@ -13,7 +13,7 @@ from gis.samples import assert_same_cloud, assert_same_raster
 from wavelet_core import analyse
 from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.io.las import write_cloud
-from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.io.raster import write_dem
 from wavelet_gis.workflows.open import open_terrain
 

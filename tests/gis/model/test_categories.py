@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from gis.samples import write_las
+from gis.samples import hills, write_las, write_tif
 
 from wavelet_core import OptionError, analyse
 from wavelet_gis.cli.main import main
+from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.las import write_cloud
-from wavelet_gis.io.pyramid_file import read_pyramid, write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.products.layers import coarse_layers
 from wavelet_gis.products.level_raster import surface_dem
@@ -119,3 +120,8 @@ def test_too_many_categories_are_no_channels(cloud):
     many = replace(points.attributes[0], values=np.arange(900, dtype=np.uint16) % 200)
     with pytest.raises(OptionError, match="200 values"):
         one_channel_per_category(replace(points, attributes=(many,)))
+
+
+def test_channels_of_classes_are_refused_for_a_raster(tmp_path):
+    with pytest.raises(InputFileError, match="class_channels are for point clouds"):
+        open_terrain(write_tif(tmp_path / "a.tif", hills().astype("f4")), class_channels=True)

@@ -45,6 +45,18 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("input")
     group.add_argument("--band", type=int, metavar="N", help="band of a raster, from 1")
     group.add_argument(
+        "--nodata",
+        type=_nodata,
+        metavar="VALUE",
+        help="number that stands for nothing in a raster, as stored (before scale and offset), "
+        "instead of the file's; 'none' for none",
+    )
+    group.add_argument(
+        "--offline",
+        action="store_true",
+        help="refuse a raster that reads from the network, as a VRT may",
+    )
+    group.add_argument(
         "--attributes",
         type=names,
         default=(),
@@ -104,7 +116,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "--vertical-unit",
         metavar="UNIT",
         help="of z: metre, foot or us_survey_foot; by default what the CRS says, else metre for "
-        "a geographic CRS and the unit of x and y for any other",
+        "degrees and kilometres and the unit of x and y for any other",
     )
 
 
@@ -123,6 +135,8 @@ def open_given(arguments: argparse.Namespace) -> Terrain:
         class_channels=arguments.class_channels,
         crs=arguments.crs,
         vertical_unit=arguments.vertical_unit,
+        nodata=arguments.nodata,
+        offline=arguments.offline,
         keep_noise=arguments.keep_noise,
         keep_withheld=arguments.keep_withheld,
         duplicates=arguments.duplicates,
@@ -193,7 +207,7 @@ def wavelet_options(arguments: argparse.Namespace) -> WaveletOptions:
 
 
 def add_surface_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a surface that is written as a raster."""
+    """Add the options of a surface that is written as a raster or as a mesh file."""
     raster = parser.add_argument_group("raster")
     raster.add_argument(
         "--cell-size",
@@ -204,11 +218,17 @@ def add_surface_arguments(parser: argparse.ArgumentParser) -> None:
     )
     raster.add_argument("--attribute", metavar="NAME", help="an attribute instead of the elevation")
     raster.add_argument("--cog", action="store_true", help="write a cloud-optimised GeoTIFF")
+    parser.add_argument(
+        "--to-crs",
+        metavar="CRS",
+        help="of a mesh file: a projected CRS, or auto for the UTM zone, which is the default for "
+        "an input in degrees",
+    )
 
 
 def surface_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Return the options of a surface that is written as a raster."""
-    return {name: getattr(arguments, name) for name in ("cell_size", "attribute", "cog")}
+    """Return the options of a surface that is written as a raster or as a mesh file."""
+    return {name: getattr(arguments, name) for name in ("cell_size", "attribute", "cog", "to_crs")}
 
 
 def surface_formats() -> str:
@@ -225,6 +245,15 @@ def surface_suffixes() -> str:
 def add_overwrite_argument(parser: argparse.ArgumentParser) -> None:
     """Add the leave to replace an output that exists."""
     parser.add_argument("--overwrite", action="store_true", help="replace an output that exists")
+
+
+def _nodata(text: str) -> float | str:
+    if text.lower() == "none":
+        return "none"
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is neither a number nor 'none'") from None
 
 
 def length(text: str) -> float:

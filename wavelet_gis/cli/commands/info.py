@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_core.errors import PyramidError
-    from wavelet_gis.io.pyramid_file import read_summary
+    from wavelet_gis.io.pyramid.pyramid_file import read_summary
 
     summary = read_summary(arguments.file)
     try:

@@ -29,7 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output, new_file
-    from wavelet_gis.io.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
+    from wavelet_gis.io.read_back import write_text
     from wavelet_gis.report.page import report_page
 
     check_output(
@@ -42,7 +43,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     with console.progress("report") as progress:
         page, figures = report_page(geo, arguments.level, progress)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        scratch.write_text(page, encoding="utf-8")
+        write_text(scratch, page)
     coarsest = figures["levels"][-1]
     console.say(
         f"{figures['source']['n_levels']} levels down to {coarsest['n_vertices']:,} vertices, RMSE "

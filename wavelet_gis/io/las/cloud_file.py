@@ -6,6 +6,7 @@ import io
 import os
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -28,6 +29,7 @@ from wavelet_gis.io.las.layout import (
     read_layout,
     records_of,
 )
+from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.attributes.categories import channel_category
 from wavelet_gis.model.attributes.ground import GROUND_CLASS, height_above_ground
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
@@ -188,8 +190,7 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
         stream.write(tail)
         stream.seek(0)
         stream.write(las_block.moved(block, was, tail, cloud.evlrs_at, end))
-    if compressor is not None:
-        _verify(path, layout, content)
+    read_back(path, partial(_verify, layout=layout, content=content))
 
 
 def _laspy() -> Any:
@@ -573,8 +574,15 @@ def _write_points(
 
 
 def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np.uint8]) -> None:
-    """Read compressed points back: lazrs loses some waveform references without a word."""
+    """Read the points back: lazrs loses some waveform references without a word."""
     back = np.empty_like(content)
+    if not layout.is_compressed:
+        with open(path, "rb") as stream:
+            stream.seek(layout.points_start)
+            n_bytes = stream.readinto(back.reshape(-1).data)
+        if n_bytes != content.nbytes or not np.array_equal(back, content):
+            raise OutputFileError("the points are not those that were written")
+        return
     job = laz_decoder.Job(
         path=os.fspath(path),
         start=layout.points_start,

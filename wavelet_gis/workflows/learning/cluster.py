@@ -101,7 +101,7 @@ class Labelled:
             cloud = cloud_with_classes(self.geo, self.labels, self.unlabelled, self.merges)
             write_cloud(path, cloud)
         elif suffix in RASTER_SUFFIXES:
-            from wavelet_gis.products.vertex_raster import write_bands
+            from wavelet_gis.io.raster import write_bands
 
             write_bands(path, self.raster(cell_size), self.geo.system.wkt)
         else:
@@ -180,8 +180,8 @@ def cluster(
         Clusters are numbered from the smooth to the rough.
     """
     geo = pyramid_of(data)
-    signature = energy_signature(geo.pyramid, tuple(channels), part_of(progress, 0.0, 0.9))
-    clusters = cluster_vertices(signature, count, method, seed, part_of(progress, 0.9, 1.0))
+    signature = energy_signature(geo.pyramid, tuple(channels), part_of(progress, 0.0, 0.5))
+    clusters = cluster_vertices(signature, count, method, seed, part_of(progress, 0.5, 1.0))
     found = {
         "method": method,
         "n_clusters": clusters.n_clusters,

@@ -5,7 +5,7 @@ Tables, beside the layers that other modules add:
 * ``wavelet_metadata`` (name, value): JSON texts: format, pyramid, crs, frame, source, checksums;
 * ``wavelet_levels``: vertices, triangles and errors of each level, for people;
 * ``wavelet_arrays`` and ``wavelet_chunks``: arrays of plain numbers, see
-  `wavelet_gis.io.array_tables`.
+  `wavelet_gis.io.pyramid.array_tables`.
 
 Every array has a checksum in its row, and the checksums of all rows, of the levels and of each
 piece of metadata are among the metadata. Files of before there were any (which do not name them in
@@ -24,6 +24,7 @@ import sqlite3
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 from numpy.typing import NDArray
@@ -36,14 +37,8 @@ from wavelet_core.progress import report
 from wavelet_gis._fields import LONGEST_JSON, Fields, parse_json
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import InputFileError, OutputFileError
-from wavelet_gis.io import array_tables
-from wavelet_gis.io.array_tables import (
-    StoredArrays,
-    WrittenArrays,
-    read_entries,
-    write_arrays,
-)
 from wavelet_gis.io.geopackage import (
+    check_database,
     create_geopackage,
     open_for_writing,
     open_stranger,
@@ -51,6 +46,14 @@ from wavelet_gis.io.geopackage import (
     register_attributes_table,
     table_names,
 )
+from wavelet_gis.io.pyramid import array_tables
+from wavelet_gis.io.pyramid.array_tables import (
+    StoredArrays,
+    WrittenArrays,
+    read_entries,
+    write_arrays,
+)
+from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.origin import origin_from_parts
 from wavelet_gis.notes import Note
@@ -161,7 +164,9 @@ def write_pyramid(
         connection.executemany(
             "INSERT INTO wavelet_metadata (name, value) VALUES (?, ?)", texts.items()
         )
-    _read_back(path, arrays, total, progress)
+    # SQLite's own check sees the pages; that nothing is missing, the reader itself.
+    read_back(path, check_database)
+    read_back(path, partial(_read_back, arrays=arrays, total=total, progress=progress))
 
 
 def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
@@ -229,8 +234,7 @@ def _read_back(
         raise
     except WaveletError as error:
         raise OutputFileError(
-            f"{path}: the pyramid was written, but its reader does not take it ({error}); nothing "
-            "was kept. Check the disk; if it is sound, please report this."
+            f"the reader of pyramid files does not take it: {str(error).rstrip('.')}"
         ) from error
 
 

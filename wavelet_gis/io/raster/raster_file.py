@@ -1,0 +1,602 @@
+"""DEM rasters in and out of any GDAL format, through rasterio."""
+
+from __future__ import annotations
+
+import os
+import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree  # nosec B405: reads what GDAL has just written
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_gis.crs.frame import Georeference
+from wavelet_gis.errors import InputFileError, OutputFileError, RasterWarning
+from wavelet_gis.io.names import file_of, gdal_path
+from wavelet_gis.io.raster.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
+from wavelet_gis.io.raster.nodata import doubtful_value, impossible_values
+from wavelet_gis.io.raster.raster_check import check_raster
+from wavelet_gis.io.raster.remote import NO_NETWORK, remote_reference
+from wavelet_gis.io.read_back import read_back, room_at
+from wavelet_gis.model.dem import Dem, GridGeometry, require_sound
+from wavelet_gis.notes import warn
+from wavelet_gis.products.vertex_raster import Bands
+
+if TYPE_CHECKING:
+    from rasterio.io import DatasetReader, DatasetWriter
+
+__all__ = ["NO_TAG", "read_dem", "write_bands", "write_cog", "write_dem"]
+
+#: Given for a nodata value, it says that there is none.
+NO_TAG = "none"
+
+#: Creation options of GeoTIFF that are taken over from the file that was read.
+_GTIFF_OPTIONS = ("compress", "predictor", "tiled", "blockxsize", "blockysize")
+
+#: Lossless compressions; a lossy one would break what it is told to keep.
+_LOSSLESS = {"lzw", "deflate", "packbits", "zstd", "lzma"}
+
+#: Names of tags that rasterio's ``update_tags`` takes for its own arguments.
+_UNTAKEN = {"self", "bidx", "ns"}
+
+#: Drivers by suffix where rasterio's own table is silent or ambiguous.
+_DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid", ".img": "HFA", ".vrt": "VRT"}
+
+
+def read_dem(
+    path: str | os.PathLike[str],
+    *,
+    band: int | None = None,
+    nodata: float | str | None = None,
+    offline: bool = False,
+) -> tuple[Dem, Georeference]:
+    """Return one band of a raster, and what the file tells of its coordinates.
+
+    Parameters
+    ----------
+    path : path
+        Any raster that GDAL opens, or a sub-dataset by GDAL's name (``GPKG:a.gpkg:dem``).
+    band : int, optional
+        Counted from 1; may be left out where there is only one.
+    nodata : float or ``"none"``, optional
+        The stored number that stands for nothing, instead of the file's tag.
+    offline : bool
+        Whether a raster that refers to the network is refused.
+
+    Raises
+    ------
+    InputFileError
+        When the file is missing, no raster, damaged, complex-valued, has several bands and none
+        is chosen, or needs more memory than there is; see also
+        `wavelet_gis.model.dem.require_sound`.
+
+    Warns
+    -----
+    RasterWarning
+        When numbers that can be no elevations are taken as nodata, when others may be meant as
+        nodata, and when data come over the network.
+
+    Notes
+    -----
+    Cells are holes where GDAL's mask says so (nodata, mask band, alpha), where the value is NaN or
+    infinite, tagged or not, and where it is a float of 1e30 or more.
+    """
+    import rasterio
+    from rasterio._err import CPLE_BaseError
+    from rasterio.errors import NotGeoreferencedWarning, RasterioError
+
+    _require_file(path)
+    remote = remote_reference(path)
+    if remote is not None and offline:
+        raise InputFileError(
+            "{path}: this raster reads {remote} over the network, which {0} forbids; fetch the "
+            "data first and name the local file.",
+            "offline",
+            path=path,
+            remote=remote,
+        )
+    if remote is not None:
+        _warn(
+            "raster_over_network",
+            "{path}: reads {remote} over the network ({0} forbids it)",
+            "offline",
+            path=os.fspath(path),
+            remote=remote,
+        )
+    try:
+        # A raster without georeference is told of by our own warning, once.
+        settings = NO_NETWORK if offline else {}
+        with warnings.catch_warnings(), _silent_libraries(), rasterio.Env(**settings):
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            with rasterio.open(gdal_path(path)) as dataset:
+                dem, place = _read_band(dataset, path, band, nodata)
+    except (RasterioError, CPLE_BaseError) as error:
+        if remote is not None:
+            raise InputFileError(
+                f"{path}: {remote}, which this raster reads over the network, cannot be had; fetch "
+                "it first and name the local file."
+            ) from error
+        raise InputFileError(f"{path}: {_reason(error, path)}") from error
+    require_sound(dem, os.fspath(path))
+    _tell_of_doubts(dem, path)
+    return dem, place
+
+
+def write_dem(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
+    """Write a DEM with its CRS, transform, nodata, data type and tags.
+
+    Parameters
+    ----------
+    path : path
+        The suffix chooses the format; GeoTIFF takes over compression and tiling.
+    dem : Dem
+        What to write.
+    wkt : str or None
+        Its CRS.
+
+    Raises
+    ------
+    OutputFileError
+        When GDAL cannot write this format or type of data.
+    """
+    import rasterio
+
+    driver = _driver_of(path)
+    is_exact = driver == "GTiff"
+    with _complaints_about(path, f"as {driver}", "use a name ending in .tif"):
+        profile = _profile_to_write(dem, wkt, driver)
+        if not is_exact:
+            _write_copy(path, profile, dem)
+        elif _UNTAKEN & {*_texts(dem.profile.get("tags")), *_texts(dem.profile.get("band_tags"))}:
+            _write_with_any_tags(path, profile, dem)
+        else:
+            with rasterio.open(gdal_path(path), "w", **profile, **_gtiff_options(dem)) as dataset:
+                _fill(dataset, dem)
+    read_back(path, partial(_check_dem, dem=dem, is_exact=is_exact))
+
+
+def write_cog(path: str | os.PathLike[str], dem: Dem, wkt: str | None) -> None:
+    """Write a DEM as a cloud-optimised GeoTIFF: tiled, deflate, with overviews.
+
+    Parameters are those of `write_dem`.
+
+    Raises
+    ------
+    OutputFileError
+        When GDAL cannot write it.
+    """
+    import rasterio
+
+    with _complaints_about(path, "as a cloud-optimised GeoTIFF", "leave {0} out", "cog"):
+        profile = _profile_to_write(dem, wkt, "COG")
+        options = {"compress": "deflate", "predictor": "yes"}
+        with rasterio.open(gdal_path(path), "w", **profile, **options) as dataset:
+            _fill(dataset, dem)
+    read_back(path, partial(_check_dem, dem=dem, is_exact=True))
+
+
+def write_bands(path: str | os.PathLike[str], bands: Bands, wkt: str | None) -> None:
+    """Write bands to a GeoTIFF, each with its name.
+
+    Parameters
+    ----------
+    path : path
+        A file that does not exist yet.
+    bands : Bands
+        What to write.
+    wkt : str or None
+        The CRS.
+
+    Raises
+    ------
+    OutputFileError
+        When GDAL cannot write them.
+    """
+    import rasterio
+
+    n_bands, n_rows, n_columns = bands.values.shape
+    with (
+        _complaints_about(path, "as GTiff", "ask for fewer bands, or larger cells"),
+        rasterio.open(
+            gdal_path(path),
+            "w",
+            driver="GTiff",
+            count=n_bands,
+            height=n_rows,
+            width=n_columns,
+            dtype=bands.values.dtype.name,
+            crs=wkt,
+            transform=rasterio.Affine(*bands.geometry.transform),
+            nodata=bands.nodata,
+            compress="deflate",
+            tiled=True,
+            predictor=3 if bands.values.dtype.kind == "f" else 1,
+            bigtiff="if_safer",
+        ) as dataset,
+    ):
+        for k, (band, name) in enumerate(zip(bands.values, bands.names, strict=True), start=1):
+            dataset.write(band, k)
+            dataset.set_band_description(k, name)
+    read_back(
+        path,
+        partial(check_raster, bands=bands.values, geometry=bands.geometry, nodata=bands.nodata),
+    )
+
+
+def _check_dem(path: str | os.PathLike[str], dem: Dem, is_exact: bool) -> None:
+    has_mask = is_exact and bool(dem.profile.get("has_mask"))
+    check_raster(
+        path,
+        dem.values[None],
+        dem.geometry,
+        dem.nodata,
+        valid=dem.valid if has_mask else None,
+        is_exact=is_exact,
+    )
+
+
+def _profile_to_write(dem: Dem, wkt: str | None, driver: str) -> dict[str, Any]:
+    import rasterio
+    from rasterio.crs import CRS
+
+    n_rows, n_columns = dem.geometry.shape
+    return {
+        "driver": driver,
+        "width": n_columns,
+        "height": n_rows,
+        "count": 1,
+        "dtype": dem.values.dtype.newbyteorder("=").name,
+        "nodata": dem.nodata,
+        "transform": rasterio.Affine(*dem.geometry.transform),
+        "crs": CRS.from_wkt(wkt) if wkt else None,
+    }
+
+
+@contextmanager
+def _complaints_about(
+    path: str | os.PathLike[str], what: str, remedy: str, *options: str
+) -> Iterator[None]:
+    """Turn what GDAL and rasterio raise in the block into one error of ours."""
+    from rasterio._err import CPLE_BaseError
+    from rasterio.errors import NotGeoreferencedWarning, RasterioError
+
+    try:
+        with warnings.catch_warnings(), _silent_libraries():
+            # A raster without georeference was told of when it was read.
+            warnings.simplefilter("ignore", NotGeoreferencedWarning)
+            yield
+    # GDAL's own errors reach us bare where rasterio only hands a call through.
+    # rasterio raises SystemError where GDAL fails without saying why.
+    except (RasterioError, CPLE_BaseError, ValueError, SystemError) as error:
+        cause = error.__cause__ or error
+        room = ""
+        if not (isinstance(error, ValueError) or "support" in str(cause)):
+            room = f"{room_at(Path(path).parent)}, or "
+        raise OutputFileError(
+            "{path}: GDAL cannot write this {what} ({cause}); {room}" + remedy + ".",
+            *options,
+            path=path,
+            what=what,
+            cause=cause,
+            room=room,
+        ) from error
+
+
+@contextmanager
+def _silent_libraries() -> Iterator[None]:
+    """Keep what libtiff prints on its own off standard error; the error itself comes to us."""
+    try:
+        kept = os.dup(2)
+    except OSError:  # standard error is closed
+        yield
+        return
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+
+
+def _require_file(path: str | os.PathLike[str]) -> None:
+    # GDAL's own virtual paths (/vsizip/..., driver prefixes) are left to GDAL.
+    name = os.fspath(path)
+    if name.startswith("/vsi"):
+        return
+    if os.path.isdir(name):
+        raise InputFileError(f"{name}: this is a folder; name the raster file in it.")
+    if file_of(name) is None or not os.path.exists(str(file_of(name))):
+        raise InputFileError(f"{name}: there is no such file; check the path.")
+
+
+def _read_band(
+    dataset: DatasetReader,
+    path: str | os.PathLike[str],
+    band: int | None,
+    nodata: float | str | None,
+) -> tuple[Dem, Georeference]:
+    if dataset.count == 0:
+        names = dataset.subdatasets
+        told = ", ".join(names[:4]) + (", ..." if len(names) > 4 else "")
+        raise InputFileError(
+            f"{path}: the file holds {len(names)} sub-datasets and no band of its own; name one "
+            f"of them as the input{': ' if told else ''}{told}."
+        )
+    if band is None and dataset.count > 1:
+        raise InputFileError(
+            "{path}: the raster has {n_bands} bands; choose the one with the elevations by {0}.",
+            "band",
+            path=path,
+            n_bands=dataset.count,
+        )
+    index = 1 if band is None else band
+    if not 1 <= index <= dataset.count:
+        raise InputFileError(
+            f"{path}: there is no band {index}; the bands are 1 to {dataset.count}."
+        )
+    dtype = np.dtype(dataset.dtypes[index - 1])
+    if dtype.kind not in "iuf":
+        raise InputFileError(
+            f"{path}: band {index} holds {dtype} values; elevations must be real numbers."
+        )
+    n_cells = dataset.height * dataset.width
+    require_memory(
+        n_cells * BYTES_PER_CELL, os.fspath(path), f"{dataset.height} x {dataset.width} cells"
+    )
+    values = dataset.read(index)
+    transform = tuple(dataset.transform)[:6]
+    valid = _valid_cells(dataset, index, values, nodata, path)
+    n_valid = int(np.count_nonzero(valid))
+    require_memory(n_valid * BYTES_PER_VERTEX, os.fspath(path), f"{n_valid:,} cells with data")
+    dem = Dem(
+        values=values,
+        valid=valid,
+        geometry=GridGeometry(values.shape, transform),
+        nodata=_nodata(dataset, index),
+        scale=float(dataset.scales[index - 1]),
+        offset=float(dataset.offsets[index - 1]),
+        profile=_profile(dataset, index),
+    )
+    wkt = dataset.crs.to_wkt() if dataset.crs else None
+    return dem, Georeference(wkt, dataset.units[index - 1] or None)
+
+
+def _valid_cells(
+    dataset: DatasetReader,
+    index: int,
+    values: NDArray[Any],
+    nodata: float | str | None,
+    path: str | os.PathLike[str],
+) -> NDArray[np.bool_]:
+    """Return which cells are elevations: nodata is compared with the numbers as stored."""
+    from rasterio.enums import MaskFlags
+
+    is_tag_alone = MaskFlags.nodata in dataset.mask_flag_enums[index - 1]
+    if nodata is None or not is_tag_alone:
+        valid: NDArray[np.bool_] = dataset.read_masks(index) != 0
+    else:
+        valid = np.ones(values.shape, dtype=bool)
+    if values.dtype.kind == "f":
+        valid &= np.isfinite(values)
+    if nodata is None:
+        holes = valid & impossible_values(values)
+        if holes.any():
+            found = sorted({float(value) for value in np.unique(values[holes])[:3]})
+            _warn(
+                "impossible_elevations",
+                "{path}: {n_cells:,} cells hold {values}, which is no elevation; they are taken "
+                "as nodata ({0} names another value, or {none})",
+                "nodata",
+                path=os.fspath(path),
+                n_cells=int(np.count_nonzero(holes)),
+                values=", ".join(f"{value:.8g}" for value in found),
+                none=NO_TAG,
+            )
+            valid &= ~holes
+    elif nodata != NO_TAG:
+        number = float(nodata)
+        info = np.iinfo(values.dtype) if values.dtype.kind in "iu" else None
+        if info and not (number.is_integer() and info.min <= number <= info.max):
+            raise InputFileError(
+                f"{path}: the raster holds {values.dtype} numbers, so {nodata} cannot be its "
+                "nodata value; give one as stored, before scale and offset."
+            )
+        valid &= values != values.dtype.type(number)
+    return valid
+
+
+def _tell_of_doubts(dem: Dem, path: str | os.PathLike[str]) -> None:
+    doubt = doubtful_value(dem.values[dem.valid])
+    if doubt is not None:
+        value, count, nearest = doubt
+        _warn(
+            "doubtful_elevations",
+            "{path}: {n_cells:,} cells hold {value:.8g} and the next value is {nearest:.8g}; they "
+            "are taken as elevations ({0} {value:.8g} makes them holes)",
+            "nodata",
+            path=os.fspath(path),
+            n_cells=count,
+            value=value,
+            nearest=nearest,
+        )
+
+
+def _warn(code: str, template: str, *options: str, **figures: Any) -> None:
+    warn(RasterWarning, code, template, *options, stacklevel=4, **figures)
+
+
+def _nodata(dataset: DatasetReader, index: int) -> float | int | None:
+    nodata = dataset.nodatavals[index - 1]
+    if nodata is None:
+        return None
+    is_integer = np.dtype(dataset.dtypes[index - 1]).kind in "iu"
+    return int(nodata) if is_integer and float(nodata).is_integer() else float(nodata)
+
+
+def _profile(dataset: DatasetReader, index: int) -> dict[str, Any]:
+    """Return what the writer may take over, as JSON-able values."""
+    from rasterio.enums import MaskFlags
+
+    structure = dataset.tags(ns="IMAGE_STRUCTURE")
+    options = {key: value for key, value in dataset.profile.items() if key in _GTIFF_OPTIONS}
+    if "PREDICTOR" in structure:
+        options["predictor"] = int(structure["PREDICTOR"])
+    profile: dict[str, Any] = {
+        "driver": dataset.driver,
+        "options": options,
+        "tags": dict(dataset.tags()),
+        "band_tags": dict(dataset.tags(index)),
+        "band": index,
+        "description": dataset.descriptions[index - 1],
+        "unit": dataset.units[index - 1],
+    }
+    if MaskFlags.per_dataset in dataset.mask_flag_enums[index - 1]:
+        profile["has_mask"] = True
+    return profile
+
+
+def _gtiff_options(dem: Dem) -> dict[str, Any]:
+    """Return the creation options that the profile hints at and that GeoTIFF takes.
+
+    The hints may come from another format, or from a file of unknown origin.
+    """
+    hints = dem.profile.get("options")
+    hints = hints if isinstance(hints, dict) else {}
+    options: dict[str, Any] = {}
+    if str(hints.get("compress")).lower() in _LOSSLESS:
+        options["compress"] = str(hints["compress"])
+        if hints.get("predictor") in ([1, 2, 3] if dem.values.dtype.kind == "f" else [1, 2]):
+            options["predictor"] = hints["predictor"]
+    if hints.get("tiled") is True:
+        options["tiled"] = True
+        sizes = [hints.get("blockxsize"), hints.get("blockysize")]
+        if all(type(size) is int and 16 <= size <= 8192 and size % 16 == 0 for size in sizes):
+            options["blockxsize"], options["blockysize"] = sizes
+    if dem.values.nbytes > 3 << 30:
+        options["bigtiff"] = "IF_SAFER"
+    return options
+
+
+def _fill(dataset: DatasetWriter, dem: Dem) -> None:
+    dataset.write(dem.values, 1)
+    if dem.scale != 1.0 or dem.offset != 0.0:
+        dataset.scales, dataset.offsets = (dem.scale,), (dem.offset,)
+    dataset.update_tags(**_takeable(dem.profile.get("tags")))
+    dataset.update_tags(1, **_takeable(dem.profile.get("band_tags")))
+    if dem.profile.get("description"):
+        dataset.set_band_description(1, str(dem.profile["description"]))
+    if dem.profile.get("unit"):
+        dataset.units = (str(dem.profile["unit"]),)
+    if dem.profile.get("has_mask"):
+        dataset.write_mask(dem.valid)
+
+
+def _texts(tags: object) -> dict[str, str]:
+    """Return tags as GDAL takes them, without statistics, which may hold no longer."""
+    if not isinstance(tags, dict):
+        return {}
+    return {str(key): str(value) for key, value in tags.items() if "STATISTICS_" not in str(key)}
+
+
+def _takeable(tags: object) -> dict[str, str]:
+    return {key: value for key, value in _texts(tags).items() if key not in _UNTAKEN}
+
+
+def _write_copy(path: str | os.PathLike[str], profile: dict[str, Any], dem: Dem) -> None:
+    """Write through memory, for the formats that GDAL can only copy to.
+
+    Some of them lose what they cannot hold without a word; reading back tells.
+    """
+    from rasterio.io import MemoryFile
+    from rasterio.shutil import copy
+
+    driver = profile["driver"]
+    with MemoryFile() as memory:
+        with memory.open(**{**profile, "driver": "GTiff"}) as dataset:
+            _fill(dataset, dem)
+        with memory.open() as dataset:
+            copy(dataset, str(gdal_path(path)), driver=driver)
+
+
+def _write_with_any_tags(path: str | os.PathLike[str], profile: dict[str, Any], dem: Dem) -> None:
+    """Write a GeoTIFF with tags whose names rasterio takes for arguments of its own.
+
+    By way of a VRT, into whose text they are put.
+    """
+    import rasterio
+    from rasterio.shutil import copy
+
+    options = _gtiff_options(dem)
+    with TemporaryDirectory(dir=Path(path).parent) as folder:
+        base, described = f"{folder}/base.tif", f"{folder}/base.vrt"
+        with rasterio.open(base, "w", **profile) as dataset:
+            _fill(dataset, dem)
+        with rasterio.open(base) as dataset:
+            copy(dataset, described, driver="VRT")
+        root = ElementTree.parse(described).getroot()  # nosec B314: GDAL has just written it
+        band = root.find("VRTRasterBand")
+        for element, tags in ((root, "tags"), (band, "band_tags")):
+            untaken = {k: v for k, v in _texts(dem.profile.get(tags)).items() if k in _UNTAKEN}
+            if element is None or not untaken:
+                continue
+            metadata = next((m for m in element.findall("Metadata") if not m.attrib), None)
+            if metadata is None:
+                metadata = ElementTree.Element("Metadata")
+                element.insert(0, metadata)
+            for key, value in untaken.items():
+                ElementTree.SubElement(metadata, "MDI", key=key).text = value
+        ElementTree.ElementTree(root).write(described, encoding="utf-8")
+        copy(described, str(gdal_path(path)), driver="GTiff", **options)
+
+
+def _driver_of(path: str | os.PathLike[str]) -> str:
+    suffix = Path(path).suffix.lower()
+    if suffix in _DRIVERS:
+        return _DRIVERS[suffix]
+    from rasterio.drivers import driver_from_extension
+
+    try:
+        return str(driver_from_extension(os.fspath(path)))
+    except ValueError as error:
+        raise OutputFileError(
+            f"{path}: no raster format is known by this suffix; use a name ending in .tif."
+        ) from error
+
+
+def _reason(error: Exception, path: str | os.PathLike[str]) -> str:
+    """Return the first line of GDAL's complaint, as a sentence with a remedy."""
+    if _is_text_of_points(path):
+        return (
+            "this is a text file of points, not a raster that GDAL can open; make a LAS file of "
+            "it (pdal translate a.xyz a.las), or a grid (gdal_grid)."
+        )
+    cause = error.__cause__ or error
+    text = str(cause).splitlines()[0] if str(cause) else type(cause).__name__
+    if "not recognized" in text:
+        return "this is no raster that GDAL can open; check the file and its suffix."
+    return f"the raster cannot be read ({text.rstrip('.')}); the file is damaged, get it again."
+
+
+def _is_text_of_points(path: str | os.PathLike[str]) -> bool:
+    """Return whether a file holds lines of three numbers or more, perhaps under a heading."""
+    try:
+        with open(path, "rb") as stream:
+            lines = stream.read(4096).decode("ascii").splitlines()[:20]
+    except (OSError, UnicodeDecodeError):
+        return False
+    rows = [re.split(r"[\s,;]+", line.strip()) for line in lines[1:-1] or lines]
+    return bool(rows) and all(_are_numbers(row[:3]) for row in rows if row != [""])
+
+
+def _are_numbers(words: list[str]) -> bool:
+    try:
+        return len([float(word) for word in words]) == 3
+    except ValueError:
+        return False
