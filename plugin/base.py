@@ -43,6 +43,8 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
     GROUP: ClassVar[str]
     #: Packages needed beyond NumPy and SciPy.
     PACKAGES: ClassVar[tuple[dependencies.Package, ...]] = ()
+    #: What is being run, as Python takes it; for the metadata of its outputs.
+    command: str = ""
 
     def createInstance(self) -> TerrainWaveletsAlgorithm:
         """Return a new algorithm of the same kind."""
@@ -154,6 +156,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
             check_outputs(self, parameters, context)
         except WaveletError as error:
             raise QgsProcessingException(self.in_words(error)) from error
+        self.command = self.asPythonCommand(parameters, context)
         self.take_layers(request)
         return True
 

@@ -85,7 +85,7 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         log_levels(request, geo)
         save(request, geo, output, 0.75, 0.95)
         results = {"OUTPUT": output, **figures(geo), **self.more_figures(request, geo)}
-        if request.has("COARSE_TIN"):
+        if request.wants("COARSE_TIN"):
             results["COARSE_TIN"] = tin_output.write_level(request, "COARSE_TIN", geo, 0)
         request.feedback.setProgress(100)
         return results

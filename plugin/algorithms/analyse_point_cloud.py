@@ -11,6 +11,7 @@ from qgis.core import (
     QgsProcessingParameterCrs,
     QgsProcessingParameterEnum,
     QgsProcessingParameterFile,
+    QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
 
@@ -20,8 +21,10 @@ from ..parameters.analysis_options import (
     weight_options,
     weights_refusal,
 )
+from ..parameters.choices import choice, duplicate_rules
 from ..parameters.request import Request
 from ..ui import dependencies
+from ..ui.enums import REAL_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._analysis import AnalysisAlgorithm
@@ -110,12 +113,49 @@ class AnalysePointCloud(AnalysisAlgorithm):
             ),
             advanced=True,
         )
+        self._add_surface_parameters()
         self.add(
             QgsProcessingParameterCrs("CRS", tr("CRS of the points"), optional=True),
             tr("Instead of the CRS in the file, or where it has none."),
             advanced=True,
         )
         self.add_analysis_parameters()
+
+    def _add_surface_parameters(self) -> None:
+        self.add(
+            QgsProcessingParameterBoolean("KEEP_NOISE", tr("Keep points of noise"), False),
+            tr(
+                "Let points of the classes 7 and 18 be part of the surface. Otherwise they are "
+                "only carried, and the reconstructed file has them."
+            ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterBoolean("KEEP_WITHHELD", tr("Keep withheld points"), False),
+            tr("The same for points with the withheld flag."),
+            advanced=True,
+        )
+        self.add(
+            choice("DUPLICATES", tr("Height of points at one place"), duplicate_rules()),
+            tr("Which height points have that share x and y; each of them comes back."),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "MAX_EDGE", tr("Longest edge"), REAL_NUMBER, None, optional=True, minValue=0.0
+            ),
+            tr(
+                "Triangles with a longer edge are left out, as gaps of the point cloud; in the "
+                "unit of x and y, or metres for a geographic CRS. 0 for five times the spacing "
+                "that 95 % of the points keep; empty to fill the convex hull."
+            ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterBoolean("CONCAVE", tr("Gaps at the outline only"), False),
+            tr("Leave out only what such edges open to the outside; gaps inside stay closed."),
+            advanced=True,
+        )
 
     def refusal(self, request: Request) -> str | None:
         """Refuse a file that is not there, and classes or weights that are no numbers."""
@@ -146,6 +186,8 @@ class AnalysePointCloud(AnalysisAlgorithm):
             attributes=[*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")],
             classes=request.whole_numbers("CLASSES") or None,
             carry=request.flag("CARRY"),
+            keep_noise=request.flag("KEEP_NOISE"),
+            keep_withheld=request.flag("KEEP_WITHHELD"),
         )
         crs = request.crs("CRS")
         if not crs.isValid() and place.wkt:
@@ -154,6 +196,7 @@ class AnalysePointCloud(AnalysisAlgorithm):
                 raise QgsProcessingException(
                     tr("{}: QGIS does not understand the CRS in the file; choose one.").format(path)
                 )
+        max_edge = request.number("MAX_EDGE")
         request.stage(tr("Triangulating {} points").format(cloud.n_points))
         return terrain_of_cloud(
             path,
@@ -161,6 +204,9 @@ class AnalysePointCloud(AnalysisAlgorithm):
             coordinate_system(crs),
             vertical_unit(request) or place.vertical_unit,
             fault=place.fault,
+            duplicates=request.text("DUPLICATES") or duplicate_rules()[0],
+            max_edge="auto" if max_edge == 0 else max_edge,
+            concave=request.flag("CONCAVE"),
         )
 
     def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:

@@ -305,9 +305,9 @@ def _written(request: Request, labelled: Labelled) -> Values:
     if path:
         bands = labelled.raster(request.size("CELL_SIZE"))
         write_bands(path, bands, crs_of(labelled.geo), request.feedback)
-        styles.style_output(request.context, path, partial(styles.style_labels, name=labelled.name))
+        request.finish("RASTER", path, partial(styles.style_labels, name=labelled.name))
         results["RASTER"] = path
-    if request.has("OUTPUT"):
+    if request.wants("OUTPUT"):
         results["OUTPUT"] = tin_output.write_layer(
             request, "OUTPUT", labelled.geo, labelled.layer()
         )

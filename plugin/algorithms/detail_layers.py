@@ -153,9 +153,9 @@ class DetailLayers(PyramidAlgorithm):
             n_details += vectors.add_layer(sink, layer, request.feedback, rows)
             largest = max(largest, float(magnitude.max(initial=0.0)))
             request.progress(0.0, 0.6)((level - first + 1) / (last - first + 1))
-        styles.style_output(request.context, destination, styles.style_details)
+        request.finish("OUTPUT", destination, styles.style_details)
         results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
-        if request.has("ENERGY"):
+        if request.wants("ENERGY"):
             results["ENERGY"] = _write_energy(request, geo)
         return results
 
@@ -189,5 +189,5 @@ def _write_energy(request: Request, geo: GeoPyramid) -> str:
         request.size("CELL_SIZE"), request.progress(0.6, 0.9)
     )
     write_bands(path, bands, crs_of(geo), request.feedback)
-    styles.style_output(request.context, path, styles.style_energy)
+    request.finish("ENERGY", path, styles.style_energy)
     return path

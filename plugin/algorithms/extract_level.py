@@ -13,7 +13,7 @@ from qgis.core import (
 
 from ..base import Values
 from ..parameters.mesh_output import add_mesh_parameter, mesh_packages
-from ..parameters.pyramid import checked_level
+from ..parameters.pyramid import checked_level, log_levels
 from ..parameters.request import Request
 from ..parameters.surface_output import add_error_outputs, surface_figures, write_surface
 from ..ui.enums import POINTS, POLYGONS, REAL_NUMBER, WHOLE_NUMBER
@@ -52,8 +52,9 @@ class ExtractLevel(PyramidAlgorithm):
         """Return what it does."""
         return tr(
             "Synthesises the terrain at one level of a pyramid and gives it as triangles, "
-            "vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the "
-            "analysis says how large and how accurate each level is."
+            "vertices, a raster or a mesh file for hydraulic models. Instead of a level, give a "
+            "number of vertices or the largest error, and you get a size between two levels. The "
+            "log shows how large and how accurate each level is; level 0 is the coarsest."
         )
 
     def declare(self) -> None:
@@ -62,6 +63,21 @@ class ExtractLevel(PyramidAlgorithm):
         self.add(
             QgsProcessingParameterNumber("LEVEL", tr("Level"), WHOLE_NUMBER, 0, minValue=0),
             tr("0 is the coarsest; the number of levels is the input itself."),
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "VERTICES_WANTED", tr("Number of vertices"), WHOLE_NUMBER, None, True, 1
+            ),
+            tr("Instead of a level: exactly this many, from those of the coarsest level to all."),
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "MAX_ERROR", tr("Largest error"), REAL_NUMBER, None, True, 0.0
+            ),
+            tr(
+                "Instead of a level: the smallest size found at which no input point is farther "
+                "above or below the surface, in the unit of elevation."
+            ),
         )
         self.add(
             QgsProcessingParameterNumber(
@@ -103,7 +119,17 @@ class ExtractLevel(PyramidAlgorithm):
         add_mesh_parameter(self, tr("Mesh of the level"))
         self.addOutput(QgsProcessingOutputNumber("N_VERTICES", tr("Number of vertices")))
         self.addOutput(QgsProcessingOutputNumber("N_FACES", tr("Number of triangles")))
+        self.addOutput(
+            QgsProcessingOutputNumber("FOUND_LEVEL", tr("Level, or the finer one of two"))
+        )
         add_error_outputs(self, tr("of the surface"))
+
+    def refusal(self, request: Request) -> str | None:
+        """Refuse more than one rule."""
+        rules = [request.has("VERTICES_WANTED"), request.has("MAX_ERROR"), request.whole("LEVEL")]
+        if sum(map(bool, rules)) > 1:
+            return tr("Give one of three: a level, a number of vertices, or the largest error.")
+        return super().refusal(request)
 
     def packages(self, request: Request) -> tuple[Package, ...]:
         """Return what writing the mesh needs."""
@@ -114,14 +140,21 @@ class ExtractLevel(PyramidAlgorithm):
         from wavelet_gis.workflows.extract import extract
 
         geo = self.geo_pyramid(request)
-        level = checked_level(geo, request.whole("LEVEL") or 0)
+        log_levels(request, geo)
         request.progress()(0.3)
-        request.stage(tr("Synthesising level {}").format(level))
-        surface = extract(geo, level=level)
+        request.stage(tr("Synthesising the surface"))
+        vertices, max_error = request.whole("VERTICES_WANTED"), request.number("MAX_ERROR")
+        is_level = vertices is None and max_error is None
+        surface = extract(
+            geo,
+            level=checked_level(geo, request.whole("LEVEL") or 0) if is_level else None,
+            vertices=vertices,
+            max_error=max_error,
+        )
         request.progress()(0.6)
         results = write_surface(request, surface)
         if not results:
             raise QgsProcessingException(
                 tr("No output is chosen; choose a TIN, vertices, a raster or a mesh.")
             )
-        return {**surface_figures(surface), **results}
+        return {**surface_figures(surface), "FOUND_LEVEL": surface.level, **results}

@@ -299,7 +299,7 @@ class FilterLevels(PyramidAlgorithm):
                 tr("A difference of DEMs needs a pyramid that was made from a DEM.")
             )
         write_dem(path, filtered.difference(), crs_of(filtered.before), request.feedback)
-        styles.style_output(request.context, path, styles.style_difference)
+        request.finish("DIFFERENCE", path, styles.style_difference)
         return {"DIFFERENCE": path}
 
 

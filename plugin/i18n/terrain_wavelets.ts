@@ -145,6 +145,16 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Gaps at the outline only</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Height of points at one place</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>Instead of the CRS in the file, or where it has none.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -155,7 +165,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Keep points of noise</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>Keep what is not transformed (GPS time, flags, ...) in the pyramid, so that the reconstructed file has it too.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Keep withheld points</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -166,6 +186,21 @@
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>LAS, LAZ or COPC file to a reversible pyramid of TINs with details by scale</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Let points of the classes 7 and 18 be part of the surface. Otherwise they are only carried, and the reconstructed file has them.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Longest edge</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -200,6 +235,16 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>The same for points with the withheld flag.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Triangles with a longer edge are left out, as gaps of the point cloud; in the unit of x and y, or metres for a geographic CRS. 0 for five times the spacing that 95 % of the points keep; empty to fill the convex hull.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>Triangulates the points of a LAS, LAZ or COPC file and turns them into a reversible wavelet pyramid. Attributes such as class, intensity, colour or height above ground are transformed together with the elevation. &lt;i&gt;Reconstruct&lt;/i&gt; gives the file back with exactly its integers.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -211,6 +256,11 @@
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
+    <source>Which height points have that share x and y; each of them comes back.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -665,12 +715,37 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Give one of three: a level, a number of vertices, or the largest error.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points the mean spacing of the level's vertices.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Instead of a level: exactly this many, from those of the coarsest level to all.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Instead of a level: the smallest size found at which no input point is farther above or below the surface, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Level, or the finer one of two</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -710,12 +785,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Level 0 is the coarsest; the analysis says how large and how accurate each level is.</source>
+    <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Instead of a level, give a number of vertices or the largest error, and you get a size between two levels. The log shows how large and how accurate each level is; level 0 is the coarsest.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Synthesising level {}</source>
+    <source>Synthesising the surface</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1130,11 +1205,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Largest error</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1285,7 +1355,12 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>How many steps of analysis at most (the paper's L). Each removes up to a quarter of the vertices. Fewer come out where nothing more can go. Empty for the default, or, with a rule below, for as many as that takes.</source>
+    <source>How far the outline, holes included, may move in plan, in the unit of x and y (metres for a geographic CRS), with the &lt;i&gt;surface&lt;/i&gt; partition. Empty for 0: vertices of the outline are removed only where it runs straight, which limits how coarse a level can become. The log tells how much the area changes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>How many steps of analysis at most (the paper's L). Each removes up to a quarter of the vertices. Fewer come out where nothing more can go. Empty for as many as a rule below takes; without one for 24, not counting those that thin flat parts alone, or 12 with another partition than &lt;i&gt;surface&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1356,6 +1431,11 @@
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>There is no attribute {} to be weighted; {}.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Tolerance of the outline</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1635,7 +1715,7 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
-    <source>The Python package numba is missing: the work runs some hundred times slower and large inputs are refused. Install it {} and start QGIS again.</source>
+    <source>The Python package numba is missing: the work takes some ten times longer, with the same result. Install it {} and start QGIS again.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -40,8 +40,9 @@ def add_rule_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
         ),
         tr(
             "How many steps of analysis at most (the paper's L). Each removes up to a quarter of "
-            "the vertices. Fewer come out where nothing more can go. Empty for the default, or, "
-            "with a rule below, for as many as that takes."
+            "the vertices. Fewer come out where nothing more can go. Empty for as many as a rule "
+            "below takes; without one for 24, not counting those that thin flat parts alone, or 12 "
+            "with another partition than <i>surface</i>."
         ),
     )  # fmt: skip
     algorithm.add(
@@ -143,6 +144,23 @@ def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
         ),
         advanced=True,
     )
+    algorithm.add(
+        QgsProcessingParameterNumber(
+            "OUTLINE_TOLERANCE",
+            tr("Tolerance of the outline"),
+            REAL_NUMBER,
+            None,
+            optional=True,
+            minValue=0.0,
+        ),
+        tr(
+            "How far the outline, holes included, may move in plan, in the unit of x and y (metres "
+            "for a geographic CRS), with the <i>surface</i> partition. Empty for 0: vertices of "
+            "the outline are removed only where it runs straight, which limits how coarse a level "
+            "can become. The log tells how much the area changes."
+        ),
+        advanced=True,
+    )
     add_vertical_unit(algorithm)
 
 
@@ -207,6 +225,7 @@ def design_options(request: Request) -> WaveletOptions:
         "signal": request.choice("SIGNAL"),
         "bending_weight": None if weight == DEFAULT_BENDING_WEIGHT else weight,
         "removal_fraction": request.number("REMOVAL_FRACTION"),
+        "outline_tolerance": request.number("OUTLINE_TOLERANCE"),
     }
 
 

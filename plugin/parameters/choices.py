@@ -27,6 +27,15 @@ def core_table(name: str) -> dict[str, Any]:
     return table
 
 
+def duplicate_rules() -> tuple[str, ...]:
+    """Return the rules for points at one place, the default first."""
+    if dependencies.missing(dependencies.ALWAYS):
+        return (DEFAULT,)
+    from wavelet_gis.model.cloud_aside import DUPLICATE_RULES
+
+    return DUPLICATE_RULES
+
+
 def choice(
     name: str, description: str, values: Iterable[str], default: str | None = None
 ) -> QgsProcessingParameterEnum:

@@ -74,7 +74,7 @@ def write_raster(request: Request, name: str, surface: Surface) -> str:
     path = request.output_layer(name)
     dem = surface_dem(surface.geo, surface.mesh, cell_size=request.size("CELL_SIZE"))
     write_dem(path, dem, crs_of(surface.geo), request.feedback)
-    styles.style_output(request.context, path, styles.style_hillshade)
+    request.finish(name, path, styles.style_hillshade)
     return path
 
 
@@ -91,7 +91,7 @@ def write_mesh_file(request: Request, name: str, surface: Surface) -> str:
         title = _title_of(request, name, path)
         details = QgsProcessingContext.LayerDetails(title, project, name, MESH_LAYER)
         request.context.addLayerToLoadOnCompletion(path, details)
-        styles.style_output(request.context, path, styles.set_mesh_crs)
+        request.finish(name, path, styles.set_mesh_crs)
     return path
 
 

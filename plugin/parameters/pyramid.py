@@ -118,9 +118,11 @@ def figures(geo: GeoPyramid) -> dict[str, Any]:
 
 
 def log_levels(request: Request, geo: GeoPyramid) -> None:
-    """Write the table of levels to the log."""
+    """Write the table of levels to the log, where their errors are known."""
+    if not geo.errors:  # they are measured on request only
+        return
     request.say(tr("level   vertices  triangles  RMSE of surface  largest error"))
-    for errors in geo.errors or ():
+    for errors in geo.errors:
         request.say(
             f"{errors.level:5d} {errors.n_vertices:10d} {errors.n_faces:10d} "
             f"{errors.rmse_surface:16.4f} {errors.max_error_surface:14.4f}"

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from qgis.core import QgsProcessingFeedback
 
 from ..qgis_io.crs_and_progress import progress, require_running
+from ..ui.layer_styles import finish_output
 
 if TYPE_CHECKING:
     from qgis.core import (
@@ -52,8 +54,13 @@ class Request:
     # What was asked for.
 
     def has(self, name: str) -> bool:
-        """Return whether a parameter says anything, or an output is wanted."""
+        """Return whether a parameter says anything."""
         return self.parameters.get(name) not in (None, "")
+
+    def wants(self, name: str) -> bool:
+        """Return whether the algorithm has an output of this name, and it is wanted."""
+        definition = self.algorithm.parameterDefinition(name)
+        return definition is not None and definition.isDestination() and self.has(name)
 
     def text(self, name: str) -> str:
         """Return a text without blanks around it; "" where there is none."""
@@ -141,6 +148,24 @@ class Request:
         """Return the path of a raster that is written; "" where it is not wanted."""
         return self.algorithm.parameterAsOutputLayer(self.parameters, name, self.context)
 
+    def finish(self, name: str, destination: str, style: Callable[[Any], None]) -> None:
+        """Let an output open with a style, and with metadata on what it is and what made it.
+
+        Parameters
+        ----------
+        name : str
+            Of the output.
+        destination : str
+            Where it is.
+        style : callable
+            One of `plugin.ui.layer_styles` that take a layer.
+        """
+        definition = self.algorithm.parameterDefinition(name)
+        help_text = "" if definition is None else definition.help()
+        abstract = f"{self.algorithm.displayName()}: {without_tags(help_text)}"
+        command = getattr(self.algorithm, "command", "")
+        finish_output(self.context, destination, style, abstract=abstract, command=command)
+
     # How it goes.
 
     @property
@@ -165,3 +190,14 @@ class Request:
         definition = self.algorithm.parameterDefinition(name)
         has_default = definition is not None and definition.defaultValue() is not None
         return self.parameters.get(name) is None and not has_default
+
+
+def without_tags(text: str) -> str:
+    """Return a help text as metadata hold it, without HTML.
+
+    Examples
+    --------
+    >>> without_tags("Fields: <i>level</i>")
+    'Fields: level'
+    """
+    return re.sub(r"<[^>]*>", "", text)

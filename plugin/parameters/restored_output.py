@@ -54,7 +54,7 @@ def add_restored_outputs(
 
 def restored_packages(request: Request) -> tuple[dependencies.Package, ...]:
     """Return what writing the point cloud needs, where one is wanted."""
-    if not request.has("POINT_CLOUD"):
+    if not request.wants("POINT_CLOUD"):
         return ()
     return dependencies.for_las(request.output_file("POINT_CLOUD"))
 
@@ -66,7 +66,7 @@ def write_restored(request: Request, restored: Reconstruction) -> dict[str, Any]
     results = {}
     write = {"raster": _write_dem, "points": _write_cloud, "tin": _write_nothing_more}
     results.update(write[restored.geo.origin.kind](request, restored))
-    if request.has("TIN"):
+    if request.wants("TIN"):
         level = restored.geo.pyramid.n_levels
         results["TIN"] = tin_output.write_level(request, "TIN", restored.geo, level)
     return results
@@ -96,7 +96,7 @@ def _write_dem(request: Request, restored: Reconstruction) -> dict[str, Any]:
         return {}
     assert isinstance(restored.original, Dem)
     write_dem(path, restored.original, crs_of(restored.geo), request.feedback)
-    styles.style_output(request.context, path, styles.style_hillshade)
+    request.finish("DEM", path, styles.style_hillshade)
     return {"DEM": path}
 
 

@@ -42,8 +42,8 @@ def surface_figures(surface: Surface) -> dict[str, Any]:
 def write_surface(request: Request, surface: Surface) -> dict[str, str]:
     """Write a surface to the outputs TIN, VERTICES, RASTER and MESH, those that are wanted."""
     results = tin_output.write_surface(request, surface)
-    if request.has("RASTER"):
+    if request.wants("RASTER"):
         results["RASTER"] = mesh_output.write_raster(request, "RASTER", surface)
-    if request.has("MESH"):
+    if request.wants("MESH"):
         results["MESH"] = mesh_output.write_mesh_file(request, "MESH", surface)
     return results

@@ -45,7 +45,7 @@ def write_surface(
     results = {}
     layers = tin_layers(surface.geo, surface.mesh, surface.vertex_ids)
     for name, layer in zip((tin, vertices), layers, strict=True):
-        if request.has(name):
+        if request.wants(name):
             results[name] = write_layer(request, name, surface.geo, layer)
     return results
 
@@ -63,5 +63,5 @@ def write_layer(request: Request, name: str, geo: GeoPyramid, layer: Layer) -> s
     if sink is None:
         raise QgsProcessingException(request.algorithm.invalidSinkError(request.parameters, name))
     vectors.add_layer(sink, layer, request.feedback)
-    styles.style_output(request.context, destination, partial(styles.apply_qml, qml=layer.style))
+    request.finish(name, destination, partial(styles.apply_qml, qml=layer.style))
     return destination

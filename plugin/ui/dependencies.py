@@ -134,8 +134,8 @@ def slow_without_numba() -> str | None:
     if not missing([NUMBA]):
         return None
     return tr(
-        "The Python package numba is missing: the work runs some hundred times slower and large "
-        "inputs are refused. Install it {} and start QGIS again."
+        "The Python package numba is missing: the work takes some ten times longer, with the same "
+        "result. Install it {} and start QGIS again."
     ).format(remedy([NUMBA]))
 
 

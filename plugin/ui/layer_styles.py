@@ -43,12 +43,14 @@ _SAMPLE_SIZE = 250_000
 _METRES_A_DEGREE = 111_320.0
 
 
-class _Style(QgsProcessingLayerPostProcessorInterface):
-    """Gives a loaded layer its style, in the main thread, after the algorithm is done."""
+class _Finish(QgsProcessingLayerPostProcessorInterface):
+    """Gives a loaded layer its style and metadata, in the main thread, after the work is done."""
 
-    def __init__(self, function: Callable[[Any], None]) -> None:
+    def __init__(self, style: Callable[[Any], None], abstract: str, command: str) -> None:
         super().__init__()
-        self.function = function
+        self._style = style
+        self._abstract = abstract
+        self._command = command
 
     def postProcessLayer(
         self,
@@ -56,10 +58,16 @@ class _Style(QgsProcessingLayerPostProcessorInterface):
         context: QgsProcessingContext,
         feedback: QgsProcessingFeedback | None,
     ) -> None:
-        """Style the layer."""
-        if layer is not None:
-            self.function(layer)
-            layer.triggerRepaint()
+        """Finish the layer."""
+        if layer is None:
+            return
+        self._style(layer)
+        metadata = layer.metadata()
+        metadata.setAbstract(self._abstract)
+        metadata.addHistoryItem(self._command)
+        metadata.setCrs(layer.crs())
+        layer.setMetadata(metadata)
+        layer.triggerRepaint()
 
 
 def apply_qml(layer: Any, qml: str) -> None:
@@ -154,13 +162,18 @@ def set_mesh_crs(layer: Any) -> None:
 
 #: Post-processors that were handed out. Some versions of QGIS take them over, others do not, so
 #: these references keep them alive until they have surely been used.
-_handed_out: deque[_Style] = deque(maxlen=1000)
+_handed_out: deque[_Finish] = deque(maxlen=1000)
 
 
-def style_output(
-    context: QgsProcessingContext, destination: str, style: Callable[[Any], None]
+def finish_output(
+    context: QgsProcessingContext,
+    destination: str,
+    style: Callable[[Any], None],
+    *,
+    abstract: str,
+    command: str,
 ) -> None:
-    """Let ``destination`` open with a style, if it opens at all.
+    """Let ``destination`` open with a style and metadata, if it opens at all.
 
     Parameters
     ----------
@@ -170,9 +183,13 @@ def style_output(
         As ``parameterAsSink`` or the output map names it.
     style : callable
         One of the functions here that take a layer.
+    abstract : str
+        What the layer is.
+    command : str
+        What made it, as Python takes it.
     """
     if destination and context.willLoadLayerOnCompletion(destination):
-        processor = _Style(style)
+        processor = _Finish(style, abstract, command)
         _handed_out.append(processor)
         context.layerToLoadOnCompletionDetails(destination).setPostProcessor(processor)
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 #: first that a dialog has.
 IDS = {
     "target_vertices": ("TARGET_VERTICES", "VERTICES"),
-    "vertices": ("VERTICES", "TARGET_VERTICES"),
+    "vertices": ("VERTICES_WANTED", "VERTICES", "TARGET_VERTICES"),
     "max_rms": ("MAX_RMS", "RMSE"),
     "sigma": ("SIGMA_OF_NOISE",),
     "n_pyramids": ("PYRAMIDS",),

@@ -182,6 +182,21 @@ class TestLevels:
         assert read_raster(made["RASTER"])["bytes"] == read_raster(back["DEM"])["bytes"]
         assert made["RMSE_SURFACE"] == pytest.approx(0.0, abs=1e-9)
 
+    def test_a_size_or_an_accuracy_between_two_levels(self, run, refused, pyramid):
+        parameters = {"INPUT": pyramid["OUTPUT"], "TIN": "TEMPORARY_OUTPUT"}
+        size = (pyramid["COARSE_VERTICES"] + pyramid["N_VERTICES"]) // 2
+        log = Log()
+        made = run("extractlevel", {**parameters, "VERTICES_WANTED": size}, feedback=log)
+        assert made["N_VERTICES"] == size
+        assert 0 < made["FOUND_LEVEL"] <= pyramid["N_LEVELS"]
+        assert any(line.split()[:1] == ["0"] for line in log.lines), "the table of levels"
+        coarse = run("extractlevel", {**parameters, "MAX_ERROR": 1e9})
+        fine = run("extractlevel", {**parameters, "MAX_ERROR": 0.2})
+        assert coarse["N_VERTICES"] == pyramid["COARSE_VERTICES"]
+        assert fine["N_VERTICES"] > coarse["N_VERTICES"]
+        both = {**parameters, "MAX_ERROR": 1.0, "LEVEL": 1}
+        assert "one of three" in refused("extractlevel", both)
+
     def test_a_level_that_is_not_there(self, refused, pyramid):
         message = refused(
             "extractlevel", {"INPUT": pyramid["OUTPUT"], "LEVEL": 9, "TIN": "TEMPORARY_OUTPUT"}
@@ -489,6 +504,34 @@ class TestPointCloud:
             {"INPUT": made["OUTPUT"], "POINT_CLOUD": str(tmp_path / "back.las")},
         )
         assert back["EXACT"] == "yes"
+
+    def test_noise_duplicates_and_gaps(self, run, tmp_path):
+        pytest.importorskip("laspy")
+        xyz = survey(600)
+        xyz = xyz[np.abs(xyz[:, 0] - 700500) > 200]  # a gap of 400 m across
+        pit, above = xyz[:1] - np.array([-1, -1, 50]), xyz[1:2] + np.array([0, 0, 3])
+        path = write_las(
+            tmp_path / "points.las",
+            np.vstack([xyz, pit, above]),
+            classification=np.array([2] * len(xyz) + [7, 2]),
+        )
+
+        def analysed(name, **options):
+            output = str(tmp_path / f"{name}.gpkg")
+            made = run("analysepointcloud", {"INPUT": path, "OUTPUT": output, **options})
+            layer = {"INPUT": output, "LEVEL": made["N_LEVELS"], "VERTICES": "TEMPORARY_OUTPUT"}
+            heights = [f["elevation"] for f in run("extractlevel", layer)["VERTICES"].getFeatures()]
+            return made, np.array(heights)
+
+        plain, heights = analysed("plain")
+        assert plain["N_VERTICES"] == len(xyz)
+        assert heights.min() > 80
+        assert analysed("noise", KEEP_NOISE=True)[1].min() < 80
+        highest = analysed("highest", DUPLICATES="highest")[1]
+        assert highest.sum() == pytest.approx(heights.sum() + 3)
+        with_gap, _ = analysed("gap", MAX_EDGE=150)
+        assert with_gap["N_FACES"] < plain["N_FACES"]
+        assert analysed("auto", MAX_EDGE=0)[0]["N_FACES"] < plain["N_FACES"]
 
     def test_a_weight_of_what_is_not_analysed_is_refused(self, refused, cloud, tmp_path):
         parameters = {"INPUT": cloud, "OUTPUT": str(tmp_path / "p.gpkg")}

@@ -1,6 +1,7 @@
 """The provider through ``qgis_process``, in a process of its own, with and without packages."""
 
 import json
+import re
 import subprocess
 import sys
 import sysconfig
@@ -65,26 +66,22 @@ def test_analyse_extract_reconstruct(qgis_process, tmp_path):
     assert_same_raster(path, back["DEM"])
 
 
-def test_without_numba_small_inputs_run_and_the_log_says_so(qgis_process, tmp_path):
+def test_without_numba_the_result_is_the_same_and_the_log_says_how_to_get_it(
+    qgis_process, tmp_path
+):
     path = write_raster(tmp_path / "dem.tif", hills(30, 30).astype("float32"))
     parameters = {"INPUT": path, "LEVELS": 3}
     slow = qgis_process(
         "analysedem", {**parameters, "OUTPUT": str(tmp_path / "slow.gpkg")}, ["numba"]
     )
     fast = qgis_process("analysedem", {**parameters, "OUTPUT": str(tmp_path / "fast.gpkg")})
-    assert "numba is missing" in slow["log"]
+    (line,) = {line for line in slow["log"].splitlines() if "numba is missing" in line}
+    # The command of this platform, which ends with the package's name there.
+    assert re.search(r"(apt install|-m pip install) .*numba", line)
     assert "numba is missing" not in fast["log"]
     assert slow["N_LEVELS"] == 3
     for figure in ("COARSE_VERTICES", "RMSE_SURFACE", "MAX_ERROR_SURFACE"):
         assert slow[figure] == pytest.approx(fast[figure], rel=1e-9), figure
-
-
-def test_without_numba_large_inputs_are_refused_with_the_remedy(qgis_process, tmp_path):
-    path = write_raster(tmp_path / "dem.tif", hills(300, 300).astype("float32"))
-    parameters = {"INPUT": path, "OUTPUT": str(tmp_path / "o.gpkg")}
-    text = qgis_process("analysedem", parameters, ["numba"], fails=True)
-    assert "numba" in text
-    assert "install" in text
 
 
 @pytest.mark.parametrize(

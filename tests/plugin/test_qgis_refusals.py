@@ -311,7 +311,7 @@ REFUSED = {
     "las11_pdrf0.las": "at least three",
     "lots_of_vlr.las": "at least three",
     "no_points.las": "no points",
-    "truncated_60pct.laz": "cannot be read as LAS or LAZ",
+    "truncated_60pct.laz": "the file is damaged",
 }
 RUN = (
     "bad_vlr_count.las",

@@ -248,6 +248,14 @@ class TestSimplify:
         assert not is_fine
         assert "one of three" in message
 
+    def test_the_number_of_vertices_is_no_output(self, run, dem, tmp_path, monkeypatch):
+        here = tmp_path / "here"
+        here.mkdir()
+        monkeypatch.chdir(here)
+        made = run("simplifydem", {"INPUT": dem, "VERTICES": 60, "TIN": "TEMPORARY_OUTPUT"})
+        assert "VERTICES" not in made
+        assert list(here.iterdir()) == []
+
     def test_without_a_rule_a_twentieth_of_the_cells_stays(self, run, dem):
         made = run("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT"})
         assert made["N_VERTICES"] == round(made["N_INPUT_VERTICES"] / 20)
@@ -337,6 +345,12 @@ class TestEveryOutputOpensStyled:
         }
         layers = opened("extractlevel", parameters)
         assert set(layers) == {"TIN of the level", "Vertices of the level", "Mesh of the level"}
+        for layer in layers.values():
+            assert layer.metadata().abstract().startswith("Extract level: ")
+            assert "<i>" not in layer.metadata().abstract()
+            (command,) = layer.metadata().history()
+            assert command.startswith('processing.run("terrainwavelets:extractlevel"')
+            assert layer.metadata().crs() == layer.crs()
         symbol = layers["Vertices of the level"].renderer().symbol()
         assert symbol.color().getRgb()[:3] == (60, 60, 60)
 
@@ -450,6 +464,29 @@ def test_a_cloud_needs_no_pythoncdt_and_breaklines_do(provider, tmp_path):
     assert dependencies.PYTHONCDT not in needed("analysepointcloud", {"INPUT": "a.laz"})
     assert needed("analysetin", {"INPUT": "a.gpkg"}) == ()
     assert needed("analysetin", {"BREAKLINES": "b.gpkg"}) == (dependencies.PYTHONCDT,)
+
+
+def test_an_outline_that_may_move_lets_a_level_be_coarser(run, tmp_path):
+    values = hills(40, 50).astype("float32")
+    rows, columns = np.mgrid[:40, :50]
+    values[np.hypot(rows - 20, columns - 25) > 17] = -9999.0
+    path = write_raster(tmp_path / "round.tif", values, -9999.0)
+    parameters = {"INPUT": path, "VERTICES": 12, "TIN": "TEMPORARY_OUTPUT"}
+    log = Log()
+    fixed = run("simplifydem", parameters, feedback=log)
+    assert fixed["N_VERTICES"] > 12
+    assert any("12" in line and "asked" in line for line in log.lines), log.lines
+    moved = run("simplifydem", {**parameters, "OUTLINE_TOLERANCE": 40.0})
+    assert moved["N_VERTICES"] == 12
+
+
+def test_what_is_noted_of_an_input_is_in_the_log(run, tmp_path):
+    values = hills(30, 40).astype("float32")
+    path = write_raster(tmp_path / "d.tif", values, None, 4326, (7.0, 44.0), 1 / 3600)
+    log = Log()
+    parameters = {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg"), "LEVELS": 1}
+    run("analysedem", parameters, feedback=log)
+    assert any("local metric frame" in line for line in log.lines)
 
 
 def test_an_error_names_parameters_as_the_dialog_does(provider):

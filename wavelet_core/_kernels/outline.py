@@ -97,6 +97,8 @@ def keeps_tolerance(v, p, q, outline):
     x, y = outline.x, outline.y
     ex, ey = x[q] - x[p], y[q] - y[p]
     squared_length = ex * ex + ey * ey
+    if squared_length <= 0.0:  # v ends a slit: both its outline neighbours are one place
+        return False
     for links, end in ((outline.after, p), (outline.before, q)):
         u = v
         while u != end:

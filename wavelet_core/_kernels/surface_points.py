@@ -347,7 +347,7 @@ def update_heights(odd, indptr, columns, weights, details, locked, integrals, z,
         squared = 0.0
         for k in range(indptr[row], indptr[row + 1]):
             if not locked[columns[k]]:
-                squared += integrals[columns[k]] ** 2
+                squared += integrals[columns[k]] * integrals[columns[k]]
         if squared <= 0.0:
             continue
         factor = integrals[odd[row]] / squared

@@ -11,7 +11,7 @@ def minimum_norm_factor(first, last, columns, odd_integral, integrals, locked):
     squared = 0.0
     for k in range(first, last):
         if not locked[columns[k]]:
-            squared += integrals[columns[k]] ** 2
+            squared += integrals[columns[k]] * integrals[columns[k]]
     if squared > 0.0:
         return odd_integral / squared
     return 0.0

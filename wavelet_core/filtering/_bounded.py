@@ -46,7 +46,7 @@ def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
     Examples
     --------
-    >>> solved(np.array([[4.0, 2.0], [2.0, 3.0]]), np.array([2.0, 5.0])).tolist()
+    >>> solved(np.array([[4.0, 2.0], [2.0, 3.0]]), np.array([2.0, 5.0])).round(12).tolist()
     [-0.5, 2.0]
     """
     left, found = matrix.copy(), right.copy()

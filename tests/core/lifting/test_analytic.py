@@ -229,5 +229,5 @@ def test_the_papers_partition_takes_a_plane_in_order_of_index(slope):
     x, y = np.meshgrid(np.arange(12.0), np.arange(9.0))
     z = slope[0] * x + slope[1] * y + 512.3
     mesh = TriangleMesh.from_grid(z, x=x[0], y=y[:, 0])
-    step = analyse(mesh, 1, partition="quadric", prediction="GL").steps[0]
+    step = analyse(mesh, levels=1, partition="quadric", prediction="GL").steps[0]
     assert (np.diff(step.odd) > 0).all()

@@ -143,7 +143,7 @@ def test_link_conditions():
     for seed in range(12):
         mesh = grid_with_holes(9, 10, seed=seed, hole_share=0.2)
         pyramid = analyse(mesh, levels=30)
-        for _, level in pyramid.meshes():
+        for level in pyramid:
             for by_half_edges, by_faces in link_tests_of(level):
                 assert by_half_edges == by_faces
                 n_refused += not by_faces
