@@ -79,7 +79,8 @@ def stop_record(
     tail, head = faces.ravel().astype(np.int64), faces[:, [1, 2, 0]].ravel().astype(np.int64)
     edges = np.minimum(tail, head) * n_vertices + np.maximum(tail, head)
     edges.sort()  # an edge of one face alone differs from both beside it
-    differs = np.concatenate([[True], edges[1:] != edges[:-1], [True]])
+    differs = np.ones(len(edges) + 1, dtype=bool)
+    differs[1:-1] = edges[1:] != edges[:-1]
     outline = edges[differs[1:] & differs[:-1]]
     on_outline[outline // n_vertices] = on_outline[outline % n_vertices] = True
     n_locked = int(locked.sum())
