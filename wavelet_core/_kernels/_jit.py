@@ -3,7 +3,8 @@
 A kernel is written as loops. With numba they are compiled; without it, its twin in
 :mod:`wavelet_core._arrays` does the same on whole arrays of numpy, for which every sum is taken in
 the same order: the bytes are the same. The loops themselves, run by Python, are the oracle that
-tests hold both against; nobody else meets them but for the few kernels without a twin.
+tests hold both against; in use they run only for the two kernels without a twin, those of the
+NNLS and least squares predictions. docs/engines.md tells a user the same.
 
 The kernels release the GIL and are run over ranges of their index space by Python threads
 (:func:`run_in_ranges`) rather than by numba's ``prange``: numba's threading layers are not safe to
