@@ -36,7 +36,7 @@ ENGINE_VARIABLE = "TERRAIN_WAVELETS_ENGINE"
 THREADS_VARIABLE = "TERRAIN_WAVELETS_THREADS"
 ENGINES = ("compiled", "arrays", "loops")
 #: Above this many items a kernel without a twin is refused where it would run as plain loops: they
-#: take about half a millisecond an item.
+#: take a fraction of a millisecond an item.
 MAX_LOOPS = 50_000
 #: Inputs with more vertices than this are told that numba would be faster.
 ANNOUNCED_FROM = 100_000
