@@ -76,11 +76,12 @@ def stop_record(
     n_vertices = len(locked)
     on_outline = np.ones(n_vertices, dtype=bool)
     on_outline[faces] = False
-    tail = faces.astype(np.int64).ravel()
-    head = faces[:, [1, 2, 0]].astype(np.int64).ravel()
-    there, back = tail * n_vertices + head, head * n_vertices + tail
-    is_open = ~np.isin(there, back)
-    on_outline[tail[is_open]] = on_outline[head[is_open]] = True
+    tail, head = faces.ravel().astype(np.int64), faces[:, [1, 2, 0]].ravel().astype(np.int64)
+    edges = np.minimum(tail, head) * n_vertices + np.maximum(tail, head)
+    edges.sort()  # an edge of one face alone differs from both beside it
+    differs = np.concatenate([[True], edges[1:] != edges[:-1], [True]])
+    outline = edges[differs[1:] & differs[:-1]]
+    on_outline[outline // n_vertices] = on_outline[outline % n_vertices] = True
     n_locked = int(locked.sum())
     n_outline = int((on_outline & ~locked).sum())
     n_inner = n_vertices - n_locked - n_outline

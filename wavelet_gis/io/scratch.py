@@ -46,9 +46,14 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
     try:
         yield Path(folder)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
-        if held is not None:
-            os.close(held)
+        try:
+            shutil.rmtree(folder, ignore_errors=True)
+        except BaseException:  # an interrupt half-way
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        finally:
+            if held is not None:
+                os.close(held)
 
 
 def sweep(folder: Path) -> None:

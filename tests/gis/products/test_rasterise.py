@@ -70,7 +70,6 @@ def test_batches_change_nothing(monkeypatch, rng):
     points = np.column_stack([rng.uniform(0, 50, (200, 2)), rng.normal(size=200)])
     mesh, geometry = TriangleMesh.from_points(points), GridGeometry((50, 50), (1, 0, 0, 0, 1, 0))
     whole = rasterise(mesh, geometry)
-    monkeypatch.setattr(module, "_FACES_AT_ONCE", 7)
     monkeypatch.setattr(module, "_CELLS_AT_ONCE", 11)
     assert rasterise(mesh, geometry).tobytes() == whole.tobytes()
 

@@ -1,0 +1,114 @@
+"""The array engine against the compiled one: time, memory, and whether the bytes are the same.
+
+    python benchmarks/engines.py [--data ../shared/data] [--large]
+
+Each run is a process of its own, whose kernels are in numba's cache; ratios are within one run of
+this script. ``whole`` is the time of the process, imports included; memory is what the analysis
+adds to that of the input mesh.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+DESIGNS = {
+    "10 %": "target_vertices=mesh.n_vertices // 10",
+    "tolerance": "max_error=tolerance",
+    "levels": "",
+    "GLMN": "prediction='GLMN', levels=12",
+}
+
+WORK = """
+import hashlib, json, resource, sys, time
+import numpy as np
+import wavelet_core as wc
+name, n, design = sys.argv[1], int(sys.argv[2]), sys.argv[3]
+if name == "synthetic":
+    y, x = np.mgrid[:n, :n]
+    noise = np.random.default_rng(1).normal(0, 0.5, (n, n))
+    z = 30 * np.sin(x / 17) + 20 * np.cos(y / 23) + noise
+    mesh = wc.TriangleMesh.from_grid(z, x=10.0 * np.arange(n), y=10.0 * np.arange(n))
+else:
+    import wavelet_gis as wg
+    mesh = wg.open(name).mesh
+tolerance = 0.02 * float(np.ptp(mesh.vertices[:, 2]))
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+began = time.perf_counter()
+if design == "denoise":
+    result = wc.denoise(mesh, 1.0)
+    digest = hashlib.sha256(result.vertices.tobytes()).hexdigest()
+    size = result.n_vertices
+else:
+    pyramid = eval(f"wc.analyse(mesh, {design})")
+    seen = hashlib.sha256()
+    for step in pyramid.steps:
+        for array in (step.odd, step.target, step.indices, step.weights, step.details):
+            seen.update(array.tobytes())
+    digest, size = seen.hexdigest(), pyramid.n_vertices(0)
+seconds = time.perf_counter() - began
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+print(json.dumps({"n": mesh.n_vertices, "left": size, "seconds": seconds, "digest": digest,
+                  "bytes": 1024 * (peak - before) / mesh.n_vertices}))
+"""
+
+
+def run(engine: str, name: str, n: int, design: str) -> dict:
+    """Return the figures of one piece of work on one engine."""
+    import time
+
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "TERRAIN_WAVELETS_ENGINE": engine}
+    if engine == "arrays":
+        environment["TERRAIN_WAVELETS_NO_NUMBA"] = "1"
+    began = time.perf_counter()
+    said = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", WORK, name, str(n), design],
+        env=environment, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return {**json.loads(said.stdout), "whole": time.perf_counter() - began}
+
+
+def compare(name: str, n: int, label: str, design: str) -> None:
+    """Print one row."""
+    run("compiled", name, n, design)  # into numba's cache
+    ours, theirs = run("compiled", name, n, design), run("arrays", name, n, design)
+    same = "same" if ours["digest"] == theirs["digest"] else "DIFFER"
+    print(
+        f"| {Path(name).stem} | {label} | {ours['n']:,} | {ours['left']:,} | "
+        f"{ours['seconds']:.1f} | {theirs['seconds']:.1f} | "
+        f"{theirs['seconds'] / ours['seconds']:.1f} | {theirs['whole']:.1f} | "
+        f"{theirs['bytes']:.0f} | {same} |",
+        flush=True,
+    )
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path, default=ROOT.parent / "shared" / "data")
+    parser.add_argument("--large", action="store_true", help="a million vertices as well")
+    parser.add_argument("--real", action="store_true", help="every DEM and cloud up to a million")
+    arguments = parser.parse_args()
+    print(
+        "| input | design | vertices | left | compiled, s | arrays, s | ratio | whole process, s "
+        "| bytes a vertex | result |\n" + "| --- " * 10 + "|"
+    )
+    for n in (100, 500, *((1000,) if arguments.large else ())):
+        for label, design in {**DESIGNS, "denoise": "denoise"}.items():
+            if n < 1000 or label in ("10 %", "tolerance", "GLMN"):
+                compare("synthetic", n, label, design)
+    if arguments.real:
+        folder = arguments.data
+        for path in sorted([*folder.glob("dems/*.tif"), *folder.glob("clouds/*.la[sz]")]):
+            if path.stat().st_size < 4e6:
+                compare(str(path), 0, "10 %", DESIGNS["10 %"])
+
+
+if __name__ == "__main__":
+    main()
