@@ -13,7 +13,7 @@ help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
 	@echo "make test       all tests: the three parts below, each whatever the others came to"
 	@echo "make test-compiled  the tests of core, files and command line, kernels compiled by numba"
-	@echo "make test-plain  the core's small tests again, kernels as plain Python"
+	@echo "make test-plain  the core's small tests again, without numba: on whole arrays"
 	@echo "make test-fast  the core's small tests only, compiled"
 	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
 	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"

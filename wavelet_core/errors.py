@@ -11,15 +11,15 @@ from collections.abc import Callable
 from typing import Any
 
 
-class WaveletError(Exception):
-    """Root of every error that this project raises on purpose.
+class Worded(Exception):  # noqa: N818 - what errors and warnings have in common
+    """A message that can be put in the words of its reader.
 
     Parameters
     ----------
     message : str
         The text; with parameters or values, a template of :meth:`str.format`.
     *options : str
-        Names of the Python parameters that the error is about: ``{0}``, ``{1}`` in the template.
+        Names of the Python parameters that it is about: ``{0}``, ``{1}`` in the template.
     **values : Any
         What else the template shows, by name.
 
@@ -44,11 +44,6 @@ class WaveletError(Exception):
         self.values = values
         super().__init__(self.in_words(str))
 
-    @property
-    def option(self) -> str | None:
-        """The parameter that the error is about, the first if there are several; or None."""
-        return self.options[0] if self.options else None
-
     def in_words(self, name_of: Callable[[str], str]) -> str:
         """Return the message with the parameters named as the reader knows them.
 
@@ -60,6 +55,21 @@ class WaveletError(Exception):
         if not self.options and not self.values:
             return self.template
         return self.template.format(*map(name_of, self.options), **self.values)
+
+
+class WaveletError(Worded):
+    """Root of every error that this project raises on purpose.
+
+    Parameters
+    ----------
+    message, *options, **values
+        See `Worded`.
+    """
+
+    @property
+    def option(self) -> str | None:
+        """The parameter that the error is about, the first if there are several; or None."""
+        return self.options[0] if self.options else None
 
 
 class MeshError(WaveletError, ValueError):
@@ -111,7 +121,7 @@ class WaveletWarning(UserWarning):
 
 
 class SlowFallbackWarning(WaveletWarning):
-    """Numba is absent, so the kernels run as plain Python."""
+    """Numba is absent, so the work takes some ten times longer, with the same result."""
 
 
 class UnstableDesignWarning(WaveletWarning):

@@ -1,4 +1,4 @@
-"""Values that a stranger wrote, each held against what it may be before anybody uses it.
+"""Values from a file of unknown origin, each held against what it may be before it is used.
 
 Metadata are parsed by `parse_json`, which lets no number through that 64 bits cannot hold, no
 infinity and no nesting beyond reason; `Fields` then gives each value out as the type that is due,

@@ -7,10 +7,7 @@ the Python functions; ``in_words`` gives them in the words of a command line or 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
-from wavelet_core.errors import WaveletError
+from wavelet_core.errors import WaveletError, Worded
 
 __all__ = [
     "CrsError",
@@ -36,37 +33,14 @@ class CrsError(WaveletError, ValueError):
     """A coordinate reference system, or a unit, that cannot be used."""
 
 
-class TerrainWarning(UserWarning):
+class TerrainWarning(Worded, UserWarning):
     """Root of the warnings about data that are odd but usable.
 
     Parameters
     ----------
-    message : str
-        The text; with parameters or values, a template of :meth:`str.format`, as that of a
-        `WaveletError`.
-    *options : str
-        Names of the Python parameters that the warning is about: ``{0}``, ``{1}`` in the template.
-    **values : Any
-        What else the template shows, by name.
+    message, *options, **values
+        See `wavelet_core.errors.Worded`.
     """
-
-    def __init__(self, message: str = "", *options: str, **values: Any) -> None:
-        self.template = message
-        self.options = options
-        self.values = values
-        super().__init__(self.in_words(str))
-
-    def in_words(self, name_of: Callable[[str], str]) -> str:
-        """Return the message with the parameters named as the reader knows them.
-
-        Parameters
-        ----------
-        name_of : callable
-            From the name of a Python parameter to what it is called.
-        """
-        if not self.options and not self.values:
-            return self.template
-        return self.template.format(*map(name_of, self.options), **self.values)
 
 
 class CrsWarning(TerrainWarning):

@@ -3,7 +3,8 @@
 A kernel is written as loops. With numba they are compiled; without it, its twin in
 :mod:`wavelet_core._arrays` does the same on whole arrays of numpy, for which every sum is taken in
 the same order: the bytes are the same. The loops themselves, run by Python, are the oracle that
-tests hold both against; nobody else meets them but for the few kernels without a twin.
+tests hold both against; in use they run only for the two kernels without a twin, those of the
+NNLS and least squares predictions. docs/engines.md tells a user the same.
 
 The kernels release the GIL and are run over ranges of their index space by Python threads
 (:func:`run_in_ranges`) rather than by numba's ``prange``: numba's threading layers are not safe to
@@ -35,7 +36,7 @@ ENGINE_VARIABLE = "TERRAIN_WAVELETS_ENGINE"
 THREADS_VARIABLE = "TERRAIN_WAVELETS_THREADS"
 ENGINES = ("compiled", "arrays", "loops")
 #: Above this many items a kernel without a twin is refused where it would run as plain loops: they
-#: take about half a millisecond an item.
+#: take a fraction of a millisecond an item.
 MAX_LOOPS = 50_000
 #: Inputs with more vertices than this are told that numba would be faster.
 ANNOUNCED_FROM = 100_000

@@ -150,7 +150,7 @@ def walk_ring(v, origin, twin, outgoing, ring, spoke):
 # beside a in the ring of v? Else the collapse of v onto a would join two parts of the mesh.
 # ring (>= base + size,) int32 holds the ring of v from `base` on; n_sides: its number of faces.
 # The rings are short, so comparing all pairs costs less than marking vertices would.
-# kernels/collapse.py asks the same of a mesh that is not collapsed in place, and of a list of the
+# _kernels/collapse.py asks the same of a mesh that is not collapsed in place, and of a list of the
 # edges made since; test_link_conditions holds the two against each other.
 @inlined
 def meets_link_condition(a, ring, base, size, n_sides, origin, twin, outgoing):

@@ -27,12 +27,12 @@ from .lattice import on_lattice
 from .outline import CUTS, STAYS, nearest_on_edge, outline_rule
 
 # new faces thinner than this part of their longest edge squared are refused; it is above what
-# rounding makes of a flat face in coordinates of 1e7 times its size, and below any face of a survey
+# rounding makes of a flat face in coordinates of 1e7 times its size
 FLATNESS_TOLERANCE = 1e-9
 LEAST_SQUARES = 0
 LARGEST = 1
 # With the largest error as the norm, the mean square tells targets of the same largest error
-# apart: it may add this share of the largest error, which is below what anybody would notice.
+# apart: it may add this share of the largest error (our choice).
 TIE_SHARE = 1e-3
 # Costs closer to each other than this part of the sum of squares that they are differences of are
 # equal: some 1e5 times what rounding leaves, so that equal costs seldom fall on either side of a

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -21,7 +21,6 @@ from .noise import channel_noise, check_sigma, deviation_of, local_energy, noise
 #: Thresholds in standard deviations of the noise, for strength 1.
 HARD_THRESHOLD = 3.0
 SOFT_THRESHOLD = 1.5
-METHODS = ("bayes", "soft", "hard")
 #: Rounds of averaging over rings that a local energy is taken over.
 LOCAL_ROUNDS = 4
 #: The kind of pyramid whose details tell noise from terrain.
@@ -128,12 +127,9 @@ def denoised(
         for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
             detail = changed[level][:, column]
             noise = gain * (deviation_of(detail / gain) if by_level else deviation)
-            threshold = strength * _threshold(step, detail, noise, method, local)
-            if method == "hard":
-                changed[level][:, column] = np.where(np.abs(detail) > threshold, detail, 0.0)
-            else:
-                shrunk = np.sign(detail) * np.maximum(np.abs(detail) - threshold, 0.0)
-                changed[level][:, column] = shrunk
+            threshold_of, applied = METHODS[method]
+            threshold = strength * threshold_of(step, detail, noise, local)
+            changed[level][:, column] = applied(detail, threshold)
     steps = tuple(
         replace(step, details=frozen(details))
         for step, details in zip(pyramid.steps, changed, strict=True)
@@ -156,16 +152,40 @@ def _is_plain(pyramid: Pyramid) -> bool:
     return all(pyramid.parameters.get(name) == value for name, value in PLAIN.items())
 
 
-def _threshold(
-    step: LinearStep, detail: FloatArray, noise: FloatArray, method: str, local: bool
+def _kept_or_zero(detail: FloatArray, threshold: FloatArray) -> FloatArray:
+    return np.where(np.abs(detail) > threshold, detail, 0.0)
+
+
+def _shrunk(detail: FloatArray, threshold: FloatArray) -> FloatArray:
+    return np.sign(detail) * np.maximum(np.abs(detail) - threshold, 0.0)
+
+
+def _hard_threshold(
+    step: LinearStep, detail: FloatArray, noise: FloatArray, local: bool
 ) -> FloatArray:
-    if method == "hard":
-        return HARD_THRESHOLD * noise
-    if method == "soft":
-        return SOFT_THRESHOLD * noise
+    return HARD_THRESHOLD * noise
+
+
+def _soft_threshold(
+    step: LinearStep, detail: FloatArray, noise: FloatArray, local: bool
+) -> FloatArray:
+    return SOFT_THRESHOLD * noise
+
+
+def _bayes_threshold(
+    step: LinearStep, detail: FloatArray, noise: FloatArray, local: bool
+) -> FloatArray:
     energy = np.divide(detail, noise, out=np.zeros_like(detail), where=noise > 0) ** 2
     around = (
         local_energy(step, energy, LOCAL_ROUNDS) if local else np.full(len(detail), energy.mean())
     )
     above = np.maximum(around - 1.0, 1e-12)
     return noise / np.sqrt(above)
+
+
+#: By the method: its threshold, and what becomes of details by it.
+METHODS: dict[str, tuple[Callable[..., FloatArray], Callable[..., FloatArray]]] = {
+    "bayes": (_bayes_threshold, _shrunk),
+    "soft": (_soft_threshold, _shrunk),
+    "hard": (_hard_threshold, _kept_or_zero),
+}

@@ -235,11 +235,11 @@ class _Analysis:
         return DEFAULT_LEVELS if levels is None else levels
 
     def _is_surface_lifting(self) -> bool:
-        """Whether partition, prediction and update are those that know of each other."""
+        """Whether `analyse_surface` carries out partition and filters as one."""
         return self._options.is_error_guided
 
     def _surface_steps(self) -> list[Step]:
-        """Keep the surface: partition, prediction and update in one, see `surface`."""
+        """Partition, predict and update in one; see `analyse_surface`."""
         options = self._options
         rules = SurfaceRules(
             levels=options.levels,

@@ -16,16 +16,16 @@ from .signal import SIGNALS, Signal
 from .update import UPDATES, Update
 
 __all__ = [
-    "DEFAULT_LEVELS",
+    "PAPER_LEVELS",
     "AnalysisOptions",
     "parse_design",
     "refused_pair",
     "resolve_options",
 ]
 
-#: Levels with the paper's partition when neither a number nor a stop rule is given: its
-#: experiments use 12.
-DEFAULT_LEVELS = 12
+#: Levels where neither a number nor a stop rule is given and the analysis is not error-guided: the
+#: paper's experiments use 12.
+PAPER_LEVELS = 12
 #: More levels than any input needs; the analysis stops by itself when nothing can be removed.
 MAX_LEVELS = 1000
 
@@ -55,7 +55,7 @@ class AnalysisOptions:
 
     @property
     def is_error_guided(self) -> bool:
-        """Whether partition, prediction and update are those that know of each other."""
+        """Whether partition and filters are those that `analyse_surface` carries out as one."""
         return _is_error_guided(self.partition, self.prediction, self.update, self.signal)
 
     def of_partition(self) -> dict[str, Any]:
@@ -187,7 +187,7 @@ def resolve_options(
     if most_levels is None and has_stop_rule:
         most_levels = MAX_LEVELS
     elif most_levels is None and not is_error_guided:
-        most_levels = DEFAULT_LEVELS
+        most_levels = PAPER_LEVELS
     tolerance = _number("outline_tolerance", outline_tolerance)
     if tolerance and not is_error_guided:
         raise OptionError(

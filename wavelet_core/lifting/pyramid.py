@@ -335,8 +335,8 @@ class Pyramid:
             )
         return array
 
-    # The two doors from a pyramid to a later room of the package: who holds one asks it for its
-    # errors and its denoised form, and the rooms that know how are built on pyramids themselves.
+    # For the user's convenience, two methods that lead on to later packages. Those are built on
+    # pyramids, so they are imported when they are called.
 
     def errors(self, progress: Progress | None = None) -> list[LevelErrors]:
         """Return size and errors of every level, the coarsest first.
@@ -348,7 +348,7 @@ class Pyramid:
 
         See Also
         --------
-        wavelet_core.metrics.level_errors : which says what the figures mean.
+        wavelet_core.metrics.level_errors : what the figures mean.
         """
         from ..accuracy.level_errors import level_errors
 

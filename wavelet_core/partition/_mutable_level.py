@@ -44,18 +44,21 @@ from .._validate import FloatArray, frozen
 from ._level_state import FaceState, VertexState
 from .outline import tolerant_outline
 
-#: The cheapest part of the vertices that a level may take, by which the cost of the others is
-#: limited: one sixteenth (not tuned; any small part would do).
-CHEAPEST_SHARE = 16
-#: Height errors below this part of the range of z never limit a cost: what single-precision input
-#: leaves of a plane is some 1e-8 of its range.
+#: The costs of a level are limited by those of the cheapest vertices that it may take: by the
+#: highest cost of this part of them, one sixteenth. *Our choice*; no comparison with other
+#: parts is on record.
+CHEAPEST_PART = 16
+#: The limit on costs is never below that of a height error of this part of the range of z, so that
+#: cheapest costs that are rounding alone do not hold up all others. *Our choice*.
 NEGLIGIBLE_ERROR = 1e-9
 #: Differences of heights below this part of the largest height of the input are rounding: 64 times
 #: the spacing of doubles there, for the few operations between a height and its error.
 HEIGHT_STEP = 2.0**-46
-#: Arrays are packed when no more than this share of them is in use: measured, packing after each
-#: tenth of the vertices is slower, and waiting until half have gone is no faster.
+#: Arrays are packed when no more than this share of them is in use: packing after each tenth of the
+#: vertices is slower, and waiting until half have gone is no faster (docs/surface.md).
 PACKED_SHARE = 0.7
+#: What the kernels call the norms of :data:`wavelet_core.partition.registry.NORMS`.
+_NORM_CODES = {"rms": LEAST_SQUARES, "max": LARGEST}
 
 
 class CollapseStep(NamedTuple):
@@ -180,7 +183,7 @@ class SurfaceLevel:
         may_matter = (vertices.cost <= cutoff) | (vertices.cost == np.inf)
         todo = np.flatnonzero(vertices.is_stale & vertices.lives & may_matter).astype(np.int32)
         limits = Limits(
-            LARGEST if norm == "max" else LEAST_SQUARES,
+            _NORM_CODES[norm],
             float(tolerance) ** 2,
             float(cutoff),
             self._height_step,
@@ -214,7 +217,7 @@ class SurfaceLevel:
         They are ``fraction`` of the vertices at most, or all that cost nothing if those are more;
         with ``besides_free``, all that cost nothing and that share of the others. None of them
         costs more than ``cost_ratio`` times what the cheapest part of those
-        (1 / CHEAPEST_SHARE) does, or than what a level before was allowed to take.
+        (1 / CHEAPEST_PART) does, or than what a level before was allowed to take.
         """
         slots, cost = self._known(cutoff)
         n_free = int(np.count_nonzero(cost <= 0.0))
@@ -222,7 +225,7 @@ class SurfaceLevel:
             n_most = n_free + max(int(fraction * (self.n_vertices - n_free)), 1)
         else:
             n_most = max(int(fraction * self.n_vertices), n_free, 1)
-        n_cheapest = max(n_most // CHEAPEST_SHARE, 1)
+        n_cheapest = max(n_most // CHEAPEST_PART, 1)
         if len(slots) < n_cheapest:
             return slots
         places = [n_cheapest - 1, min(n_most, len(slots)) - 1]

@@ -16,13 +16,12 @@ from numpy.typing import NDArray
 from .._validate import FloatArray, frozen
 from ._mutable_level import CollapseStep, SurfaceLevel
 
-#: Norms by which a removal is judged.
-NORMS = ("rms", "max")
 #: Share of the vertices that a level may take, at most, unless more cost nothing. Half of them is
-#: 1 to 6 % worse at the same size and takes 25 % less time.
+#: 1 to 6 % worse at the same size and takes 25 % less time. The comparisons that this and the
+#: numbers below rest on are in docs/surface.md, "What helped, and what did not".
 REMOVAL_FRACTION = 0.25
 #: Levels where neither their number nor a size or a tolerance is given. A level keeps some 85 % of
-#: the vertices that have relief, so about 2 % of them are left.
+#: the vertices that have relief, so 1 to 4 % of them are left (table in docs/surface.md).
 DEFAULT_LEVELS = 24
 #: Where a size or a tolerance says when to stop, a level takes no vertex that costs more than this
 #: many times what the cheapest ones do: cheap terrain goes first, whatever its share. Where only
@@ -30,14 +29,15 @@ DEFAULT_LEVELS = 24
 #: 10 % more time.
 COST_RATIO = 8.0
 #: While more than FAR times the target are left, a level may take FAR_FACTOR times the share, and
-#: vertices that are dearer: what goes then hardly adds to the error in the end (within 2 %, for 10
+#: vertices that cost more: what goes then hardly adds to the error in the end (within 2 %, for 10
 #: to 25 % less time).
 FAR = 2
 FAR_FACTOR = 2.0
 FAR_COST_RATIO = 64.0
 #: Costs beyond this multiple of the highest one of a level are not worked out for the next level,
-#: which needs more choice where it takes its full share. Too small a margin only costs time: where
-#: few candidates are found below it, all costs are worked out.
+#: which needs more choice where it takes its full share. A smaller margin leaves a level fewer
+#: candidates; all costs are worked out only where hardly any are left (LEAST_PROGRESS). *Our
+#: choice*; no other margins are on record.
 COST_MARGIN = 2.0
 FULL_SHARE_COST_MARGIN = 4.0
 #: With an update and a tolerance, how often a level is tried with half as many vertices.
@@ -68,7 +68,7 @@ class SurfaceRules(NamedTuple):
     outline_tolerance: float = 0.0
 
     def share_of(self, n_vertices: int) -> tuple[float, float]:
-        """Return which share a level may take, and how much dearer than its cheapest."""
+        """Return which share a level may take, and up to what multiple of its cheapest cost."""
         if self.target_vertices > 0 and n_vertices > FAR * self.target_vertices:
             return min(FAR_FACTOR * self.removal_fraction, 1.0), FAR_COST_RATIO
         return self.removal_fraction, COST_RATIO if self.limits_error else np.inf
@@ -204,7 +204,7 @@ def _candidates(
 ) -> tuple[NDArray[np.int32], bool]:
     """Return the slots that may go, and whether they are those of flat parts alone.
 
-    Dearer vertices are looked at where few others are left.
+    Vertices beyond the cutoff are looked at where hardly any others are left.
     """
     fraction, cost_ratio = rules.share_of(level.n_vertices)
     level.rank(rules.norm, rules.max_error, cutoff)

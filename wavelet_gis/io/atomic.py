@@ -15,7 +15,7 @@ from wavelet_gis.io.companions import (
     is_ours,
     own_companions,
     refuse_companions,
-    warn_of_strangers,
+    warn_of_foreign_files,
 )
 from wavelet_gis.io.names import MAX_DATABASE_NAME, file_of, is_utf8
 from wavelet_gis.io.read_back import Check, checks_of, require_sound_file
@@ -140,7 +140,7 @@ def new_file(path: str | os.PathLike[str], *, overwrite: bool = False) -> Iterat
                 _sync(file)
             _verify(scratch, target, checks)
         _settle(scratch, made, place, overwrite=overwrite)
-    warn_of_strangers(place)
+    warn_of_foreign_files(place)
 
 
 def _exists(target: Path) -> bool:

@@ -17,7 +17,7 @@ from pathlib import Path
 from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.notes import warn
 
-__all__ = ["holders", "is_ours", "own_companions", "refuse_companions", "warn_of_strangers"]
+__all__ = ["holders", "is_ours", "own_companions", "refuse_companions", "warn_of_foreign_files"]
 
 _OF_DATABASES = ("-wal", "-shm", "-journal")
 _OF_RASTERS = (".ovr", ".msk", ".msk.ovr", ".aux.xml")
@@ -35,7 +35,7 @@ _HEADERS = dict.fromkeys((".bil", ".bip", ".bsq", ".flt"), ".hdr")
 _OWNERS_OF_PRJ = (".shp", ".dbf", ".shx", ".asc", ".bil", ".bip", ".bsq", ".flt", ".grd", ".2dm")
 
 #: What other programs put beside a raster or a cloud under its stem.
-_STRANGERS = {
+_FOREIGN = {
     ".tif": (".tfw", ".wld", ".aux", ".rrd"),
     ".tiff": (".tfw", ".wld", ".aux", ".rrd"),
     ".las": (".lax",),
@@ -113,9 +113,9 @@ def is_ours(companion: Path, target: Path) -> bool:
         return False
 
 
-def warn_of_strangers(target: Path) -> None:
+def warn_of_foreign_files(target: Path) -> None:
     """Name files beside a new output that may have been made for the one before."""
-    endings = _STRANGERS.get(target.suffix.lower(), ())
+    endings = _FOREIGN.get(target.suffix.lower(), ())
     found = [target.with_suffix(ending) for ending in endings]
     names = [path.name for path in found if path.exists()]
     if names:

@@ -24,7 +24,7 @@ __all__ = [
     "check_rows",
     "create_geopackage",
     "open_for_writing",
-    "open_stranger",
+    "open_untrusted",
     "ordinary_columns",
     "register_attributes_table",
     "table_names",
@@ -158,7 +158,7 @@ def open_for_writing(path: str | os.PathLike[str]) -> Iterator[sqlite3.Connectio
 
 
 @contextmanager
-def open_stranger(
+def open_untrusted(
     path: str | os.PathLike[str], *, max_instructions: int | None = MAX_INSTRUCTIONS
 ) -> Iterator[sqlite3.Connection]:
     """Yield a read-only connection to a GeoPackage of unknown origin.
@@ -206,8 +206,8 @@ def open_stranger(
 
 
 def _guard(connection: sqlite3.Connection) -> None:
-    """Bound what a stranger's file can make SQLite do."""
-    # Views, triggers and functions in the schema of a stranger must not run.
+    """Bound what a file of unknown origin can make SQLite do."""
+    # Views, triggers and functions in the schema of such a file must not run.
     connection.execute("PRAGMA trusted_schema = OFF")
     connection.execute("PRAGMA query_only = ON")
     connection.execute("PRAGMA cell_size_check = ON")
@@ -270,7 +270,7 @@ def check_database(path: str | os.PathLike[str]) -> None:
     InputFileError, OutputFileError
         With what is wrong.
     """
-    with open_stranger(path, max_instructions=None) as connection:
+    with open_untrusted(path, max_instructions=None) as connection:
         verdict = str(connection.execute("PRAGMA quick_check(1)").fetchone()[0])
     if verdict != "ok":
         raise OutputFileError(f"SQLite finds {verdict}")
@@ -284,7 +284,7 @@ def check_rows(path: str | os.PathLike[str], n_rows: Mapping[str, int]) -> None:
     InputFileError, OutputFileError
         With what is wrong.
     """
-    with open_stranger(path, max_instructions=None) as connection:
+    with open_untrusted(path, max_instructions=None) as connection:
         for table, n in n_rows.items():
             quoted = '"' + table.replace('"', '""') + '"'
             (there,) = connection.execute(f"SELECT COUNT(*) FROM {quoted}").fetchone()  # nosec B608

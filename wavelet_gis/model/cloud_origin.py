@@ -19,6 +19,7 @@ from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 from wavelet_gis.model.cloud_aside import Aside, MergedHeights, merged_points
 from wavelet_gis.model.exact_restore import (
+    CORRECTIONS,
     ExactColumn,
     checksum,
     exact_column,
@@ -324,10 +325,10 @@ class CloudOrigin:
         for k, values in enumerate(cloud.carried.values()):
             arrays[f"source/carried_{k}"] = values
         if self.corrections is not None:
-            fields["ledger"] = []
+            fields[CORRECTIONS] = []
             for k, column in enumerate(self.corrections):
-                column_fields, column_arrays = column.to_parts(f"source/ledger_{k}")
-                fields["ledger"].append(column_fields)
+                column_fields, column_arrays = column.to_parts(f"source/{CORRECTIONS}_{k}")
+                fields[CORRECTIONS].append(column_fields)
                 arrays.update(column_arrays)
         return fields, arrays
 
@@ -370,10 +371,10 @@ class CloudOrigin:
             evlrs_at=None if fields.get("evlrs_at") is None else stored.integer("evlrs_at"),
         )
         corrections = None
-        if "ledger" in stored:
+        if CORRECTIONS in stored:
             corrections = tuple(
-                ExactColumn.from_parts(f"source/ledger_{k}", column, arrays)
-                for k, column in enumerate(stored.objects("ledger"))
+                ExactColumn.from_parts(f"source/{CORRECTIONS}_{k}", column, arrays)
+                for k, column in enumerate(stored.objects(CORRECTIONS))
             )
         origin = cls(
             cloud=cloud,

@@ -18,6 +18,7 @@ from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.exact_restore import (
+    CORRECTIONS,
     ExactColumn,
     checksum,
     exact_column,
@@ -283,7 +284,8 @@ class RasterOrigin:
             "source/holes": self.holes,
         }
         if self.corrections is not None:
-            fields["ledger"], correction_arrays = self.corrections.to_parts("source/ledger")
+            described, correction_arrays = self.corrections.to_parts(f"source/{CORRECTIONS}")
+            fields[CORRECTIONS] = described
             arrays.update(correction_arrays)
         return fields, arrays
 
@@ -323,8 +325,9 @@ class RasterOrigin:
         if len(holes) != n_cells - np.count_nonzero(valid) or holes.dtype != dtype:
             raise PyramidError("the holes of the raster do not fit its mask; analyse it anew.")
         corrections = None
-        if "ledger" in fields:
-            corrections = ExactColumn.from_parts("source/ledger", fields["ledger"], arrays)
+        if CORRECTIONS in fields:
+            described = fields[CORRECTIONS]
+            corrections = ExactColumn.from_parts(f"source/{CORRECTIONS}", described, arrays)
             if corrections.dtype != dtype:
                 raise PyramidError(
                     "the raster's corrections have another data type; analyse it anew."

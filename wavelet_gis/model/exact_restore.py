@@ -27,7 +27,17 @@ from numpy.typing import NDArray
 from wavelet_core.errors import PyramidError
 from wavelet_gis._fields import Fields
 
-__all__ = ["ExactColumn", "checksum", "exact_column", "nearest_of_dtype", "number_dtype"]
+__all__ = [
+    "CORRECTIONS",
+    "ExactColumn",
+    "checksum",
+    "exact_column",
+    "nearest_of_dtype",
+    "number_dtype",
+]
+
+#: What pyramid files call the corrections: a name of before, kept so that those files are read.
+CORRECTIONS = "ledger"
 
 #: Integers and floats of up to eight bytes, little-endian.
 _NUMBER_CODES = ("|u1", "|i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f2", "<f4", "<f8")
@@ -109,7 +119,7 @@ class ExactColumn:
         PyramidError
             When a part is missing or of another type than it must be.
         """
-        stored = Fields(fields, f"the ledger of {name}")
+        stored = Fields(fields, f"the correction {name}")
         quantum = stored.number("quantum")
         try:
             dtype = number_dtype(stored.text("dtype"))

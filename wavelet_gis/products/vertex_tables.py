@@ -89,7 +89,7 @@ def shape_columns(mesh: TriangleMesh) -> FloatArray:
 
 
 def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
-    """Name of each band with the spacing that it belongs to, the coarsest level first.
+    """Name of the raster band of each level, with its spacing; the coarsest level first.
 
     Parameters
     ----------

@@ -36,6 +36,10 @@ Quantity = Literal["energy", "component", "level", "shape"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 
+#: Those with a column a level: what gives the columns, and the first word of their names.
+_BY_LEVEL = {"energy": (energy_columns, "rms"), "component": (component_columns, "component")}
+
+
 class LevelDetails(NamedTuple):
     """The details of one level.
 
@@ -102,11 +106,9 @@ class Details:
             return label_band(geo, mesh, vertex_details(geo.pyramid).level, name, cell_size)
         if self.what == "shape":
             return value_bands(geo, mesh, shape_columns(mesh), SHAPE_NAMES, cell_size)
-        is_energy = self.what == "energy"
-        columns_of = energy_columns if is_energy else component_columns
+        columns_of, word = _BY_LEVEL[self.what]
         columns = columns_of(geo, self.channel, progress)
-        names = band_names(geo, "rms" if is_energy else "component")
-        return value_bands(geo, mesh, columns, names, cell_size)
+        return value_bands(geo, mesh, columns, band_names(geo, word), cell_size)
 
     def layer(self, progress: Progress | None = None) -> Layer:
         """Return the vertices as a layer: with their shape, or with details and spectrum.

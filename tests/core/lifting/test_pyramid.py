@@ -212,7 +212,7 @@ def test_x_and_y_must_be_there_exactly_when_they_are_not_lifted(pyramid):
         ({"locked": np.zeros(30, dtype=int)}, "locked has .* one bool"),
     ],
 )
-def test_an_option_that_is_not_served_is_refused(options, message):
+def test_an_option_that_has_no_meaning_is_refused(options, message):
     mesh = random_delaunay(30, n_attributes=2, seed=1)
     with pytest.raises(OptionError, match=message) as caught:
         analyse(mesh, **options)

@@ -11,7 +11,7 @@ from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.geopackage import (
     create_geopackage,
     open_for_writing,
-    open_stranger,
+    open_untrusted,
     table_names,
     write_styles,
 )
@@ -36,7 +36,7 @@ def test_styles_are_added_to_those_there(tmp_path, validate_gpkg):
 def test_a_stranger_is_opened_for_reading_only(raster_pyramid):
     with (
         pytest.raises(InputFileError, match="readonly"),
-        open_stranger(raster_pyramid) as connection,
+        open_untrusted(raster_pyramid) as connection,
     ):
         connection.execute("DELETE FROM wavelet_metadata")
 
@@ -44,7 +44,7 @@ def test_a_stranger_is_opened_for_reading_only(raster_pyramid):
 def test_names_with_signs_that_urls_give_a_meaning(tmp_path):
     for name in ("a b.gpkg", "a%20b.gpkg", "ä?mode=rwc.gpkg", "c#d.gpkg"):
         create_geopackage(tmp_path / name)
-        with open_stranger(tmp_path / name) as connection:
+        with open_untrusted(tmp_path / name) as connection:
             assert "gpkg_contents" in table_names(connection)
     assert len(list(tmp_path.iterdir())) == 4
 
@@ -58,7 +58,7 @@ def test_what_is_no_database(tmp_path):
         (tmp_path / "text.gpkg", "no GeoPackage"),
         (tmp_path / "cut.gpkg", "no GeoPackage"),
     ]:
-        with pytest.raises(InputFileError, match=what), open_stranger(path):
+        with pytest.raises(InputFileError, match=what), open_untrusted(path):
             pytest.fail("the block must not begin")
 
 
@@ -139,7 +139,7 @@ def test_what_never_ends_is_ended(tmp_path):
     started = time.monotonic()
     with (
         pytest.raises(InputFileError, match="more work than any pyramid file needs"),
-        open_stranger(tmp_path / "a.gpkg") as connection,
+        open_untrusted(tmp_path / "a.gpkg") as connection,
     ):
         connection.execute(
             "WITH RECURSIVE n(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM n) SELECT MAX(i) FROM n"

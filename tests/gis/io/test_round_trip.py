@@ -22,7 +22,7 @@ pytestmark = [
     pytest.mark.filterwarnings("ignore::wavelet_gis.errors.TerrainWarning"),
 ]
 
-#: More than four million vertices each: one level, and not where kernels run as plain Python.
+#: More than four million vertices each: one level, and not in runs without numba.
 LARGE = {
     "autzen_full_10M.laz",
     "srtm1_N48W125_4326.tif",

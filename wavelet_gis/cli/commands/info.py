@@ -47,10 +47,12 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
 
 
 def _lines(summary: dict[str, Any]) -> list[str]:
+    from wavelet_gis.model.exact_restore import CORRECTIONS
+
     source, pyramid, crs = summary["source"], summary["pyramid"], summary["crs"]
     lines = [f"source      {summary['source_name']} ({_source(source)})"]
     if "checksum" in source:
-        exact = "kept to the last bit" if "ledger" in source else "altered since the analysis"
+        exact = "kept to the last bit" if CORRECTIONS in source else "altered since the analysis"
         lines.append(f"original    {exact}")
     parameters = pyramid["parameters"]
     design = ", ".join(

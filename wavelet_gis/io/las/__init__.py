@@ -1,5 +1,6 @@
-"""LAS, LAZ and COPC files: how their bytes lie, the decoder in its child, clouds in and out."""
+"""LAS, LAZ and COPC files: how their bytes lie, the decoder in its child, clouds in, and out."""
 
-from wavelet_gis.io.las.cloud_file import ALIASES, NOISE_CLASSES, read_cloud, write_cloud
+from wavelet_gis.io.las.cloud_reader import ALIASES, NOISE_CLASSES, read_cloud
+from wavelet_gis.io.las.cloud_writer import write_cloud
 
 __all__ = ["ALIASES", "NOISE_CLASSES", "read_cloud", "write_cloud"]

@@ -33,8 +33,8 @@ __all__ = [
 #: Uncompressed bytes in a chunk, at most. Small enough to be undone in memory twice over.
 CHUNK_BYTES = 4 << 20
 
-#: Chunks beyond this are refused: a reader's memory must not be a stranger's choice. Several are
-#: undone at once, and each takes its size four times over.
+#: Chunks beyond this are refused: a file must not choose how much memory its reader takes.
+#: Several are undone at once, and each takes its size four times over.
 MAX_CHUNK_BYTES = 2 * CHUNK_BYTES
 
 #: zlib level: on pyramids of real DEMs 6 took 1.1 to 5 times the time for 0.4 to 10 % fewer bytes.
@@ -100,7 +100,7 @@ class ArrayHeader:
     def checked(
         cls, dtype: object, shape: object, filter_name: object, chunk_rows: object
     ) -> ArrayHeader:
-        """Return a header from values that a stranger wrote.
+        """Return a header from the values in a file of unknown origin.
 
         Raises
         ------

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 import wavelet_core
 from wavelet_core import Cancelled, Progress, Pyramid, PyramidError, Step, WaveletError
+from wavelet_core.lifting.signal import SIGNALS
 from wavelet_core.metrics import LevelErrors
 from wavelet_core.partition.stopping import REASONS, StopRecord
 from wavelet_core.progress import report
@@ -41,7 +42,7 @@ from wavelet_gis.io.geopackage import (
     check_database,
     create_geopackage,
     open_for_writing,
-    open_stranger,
+    open_untrusted,
     ordinary_columns,
     register_attributes_table,
     table_names,
@@ -184,7 +185,7 @@ def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
     PyramidError
         When its parts are damaged, are not those that were written, or do not fit together.
     """
-    with open_stranger(path) as connection, _pool() as pool, _one_line(path):
+    with open_untrusted(path) as connection, _pool() as pool, _naming(path):
         contents = _Contents(connection)
         arrays = StoredArrays(connection, pool, contents.entries, os.path.getsize(path))
         return _from_parts(contents, arrays)
@@ -200,7 +201,7 @@ def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
     PyramidError
         When the metadata are damaged or not those that were written.
     """
-    with open_stranger(path) as connection, _one_line(path):
+    with open_untrusted(path) as connection, _naming(path):
         contents = _Contents(connection)
         _check_source(contents.metadata.fields("source"))
         summary = dict(contents.metadata)
@@ -224,7 +225,7 @@ def _read_back(
         report(progress, _SHARE_OF_WRITING + (1 - _SHARE_OF_WRITING) * share, _CANCELLED)
 
     try:
-        with open_stranger(path) as connection, _pool() as pool:
+        with open_untrusted(path) as connection, _pool() as pool:
             contents = _Contents(connection)
             size = os.path.getsize(path)
             _from_parts(
@@ -239,7 +240,7 @@ def _read_back(
 
 
 @contextmanager
-def _one_line(path: str | os.PathLike[str]) -> Iterator[None]:
+def _naming(path: str | os.PathLike[str]) -> Iterator[None]:
     """Name the file in whatever is said of its contents."""
     try:
         yield
@@ -312,14 +313,14 @@ def _from_parts(contents: _Contents, arrays: StoredArrays) -> GeoPyramid:
         )
         for k in range(n_levels)
     ]
-    signal = described.choice("signal", ("z", "xyz"))
+    signal = described.choice("signal", tuple(SIGNALS))
     coarse = arrays.get("coarse", "<f8", 2)
     if not len(coarse):
         raise PyramidError("the coarsest level has no vertices; the file is damaged.")
     has_locked = described.flag("has_locked")
     pyramid = Pyramid.from_parts(
         faces=arrays.get("faces", "<i4", 2),
-        horizontal=arrays.get("horizontal", "<f8", 2) if signal == "z" else None,
+        horizontal=arrays.get("horizontal", "<f8", 2) if SIGNALS[signal].keeps_plan else None,
         coarse=coarse,
         steps=steps,
         channels=described.texts("channels"),

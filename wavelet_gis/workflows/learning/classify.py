@@ -6,7 +6,7 @@ Needs scikit-learn, which is imported when it is used. Arrays in, arrays out.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
@@ -191,8 +191,8 @@ def cluster_vertices(
     is a continuum, and measures of separation (the mean silhouette) chose two clusters, rough and
     smooth, on all of three DEMs that were tried.
     """
-    if method not in ("kmeans", "mixture"):
-        raise OptionError(f"method is {method!r}; give kmeans or mixture.")
+    if method not in _METHODS:
+        raise OptionError(f"method is {method!r}; give {' or '.join(_METHODS)}.")
     n_vertices = len(signature.values)
     if count is not None and not 1 <= count <= min(n_vertices, 254):
         raise OptionError(
@@ -210,9 +210,10 @@ def cluster_vertices(
             explained = _explained(fitted, seed, part_of(progress, 0.0, 0.7))
             count = _knee(explained)
         report(progress, 0.7)
-        model = _fitted_model(fitted, count, method, seed)
+        fit, assign = _METHODS[method]
+        model = fit(fitted, count, seed)
         parts = [
-            _assigned(model, columns[rows], method)
+            assign(model, columns[rows])
             for rows in _blocks(n_vertices, part_of(progress, 0.8, 1.0))
         ]
     labels, confidence = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -423,7 +424,7 @@ def _explained(
     shares = {}
     for k, count in enumerate(counts):
         report(progress, k / len(counts))
-        shares[count] = 1 - float(_fitted_model(columns, count, "kmeans", seed).inertia_) / total
+        shares[count] = 1 - float(_fitted_kmeans(columns, count, seed).inertia_) / total
     return shares
 
 
@@ -437,26 +438,39 @@ def _knee(explained: dict[int, float]) -> int:
     return int(counts[np.argmax(shares - chord)])
 
 
-def _fitted_model(columns: FloatArray, count: int, method: str, seed: int) -> Any:
-    if method == "kmeans":
-        from sklearn.cluster import KMeans
+def _fitted_kmeans(columns: FloatArray, count: int, seed: int) -> Any:
+    from sklearn.cluster import KMeans
 
-        return KMeans(count, n_init=4, random_state=seed).fit(columns)
+    return KMeans(count, n_init=4, random_state=seed).fit(columns)
+
+
+def _fitted_mixture(columns: FloatArray, count: int, seed: int) -> Any:
     from sklearn.mixture import GaussianMixture
 
     return GaussianMixture(count, reg_covar=1e-4, random_state=seed).fit(columns)
 
 
-def _assigned(model: Any, columns: FloatArray, method: str) -> tuple[IntArray, FloatArray]:
-    if method == "mixture":
-        posterior = model.predict_proba(columns)
-        return posterior.argmax(axis=1), posterior.max(axis=1)
+def _most_likely(model: Any, columns: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the component of a mixture with the highest posterior, and that."""
+    posterior = model.predict_proba(columns)
+    return posterior.argmax(axis=1), posterior.max(axis=1)
+
+
+def _nearest_centre(model: Any, columns: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the nearest centre of k-means, and how clearly it is the nearest."""
     distances = model.transform(columns)
     labels = distances.argmin(axis=1)
     if distances.shape[1] == 1:
         return labels, np.ones(len(labels))
     nearest = np.partition(distances, 1, axis=1)
     return labels, 1 - nearest[:, 0] / np.maximum(nearest[:, 1], 1e-300)
+
+
+#: By the method of clustering: how a model is fitted, and how vertices are assigned by it.
+_METHODS: dict[str, tuple[Callable[..., Any], Callable[..., tuple[IntArray, FloatArray]]]] = {
+    "kmeans": (_fitted_kmeans, _nearest_centre),
+    "mixture": (_fitted_mixture, _most_likely),
+}
 
 
 def _fitted_trees(

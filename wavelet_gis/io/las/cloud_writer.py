@@ -1,0 +1,184 @@
+"""LAS and LAZ files out: the header, VLRs and dimensions that came in, read back."""
+
+from __future__ import annotations
+
+import os
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core.errors import MissingDependencyError
+from wavelet_gis.errors import OutputFileError
+from wavelet_gis.io.las import block as las_block
+from wavelet_gis.io.las import laz_decoder
+from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, laspy_header, require_laspy
+from wavelet_gis.io.las.layout import (
+    RECORD_LENGTHS,
+    LasLayout,
+    laszip_record,
+    parse_layout,
+)
+from wavelet_gis.io.read_back import read_back
+from wavelet_gis.model.attributes.categories import channel_category
+from wavelet_gis.model.cloud import PointAttribute, PointCloud
+
+if TYPE_CHECKING:
+    from laspy.point.record import PackedPointRecord
+
+__all__ = ["write_cloud"]
+
+
+def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
+    """Write the points with the header, VLRs and dimensions they came with.
+
+    Parameters
+    ----------
+    path : path
+        ``.laz`` is compressed, anything else is not.
+    cloud : PointCloud
+        What to write. Where it is what was read, an uncompressed file is byte for byte the one
+        that was read if that was uncompressed too.
+
+    Raises
+    ------
+    OutputFileError
+        When the points cannot be compressed, or need lazrs.
+    """
+    was = parse_layout("the stored LAS header", cloud.header.tobytes())
+    layout = las_block.rebuilt(was)
+    record = _record_of(cloud, layout)
+    content = np.ascontiguousarray(record.array).view(np.uint8).reshape(cloud.n_points, -1)
+    for attribute in cloud.attributes:
+        if attribute.dimension == HEIGHT_ABOVE_GROUND and not _has_dimension(record, attribute):
+            layout = las_block.described(layout, attribute.name, "Height above ground")
+            heights = attribute.values.astype("<f4").reshape(-1, 1).view(np.uint8)
+            content = np.hstack([content, heights])
+    compressor = _laz_record(path, layout) if Path(path).suffix.lower() == ".laz" else None
+    if compressor is not None:
+        layout = las_block.rebuilt(layout, laszip=bytes(compressor.record_data()))
+    block, tail = layout.block, cloud.evlrs.tobytes()
+    if cloud.n_points != was.n_points or cloud.is_altered:
+        block = las_block.with_counts(block, cloud, _return_numbers(record))
+    with open(path, "wb") as stream:
+        stream.write(block)
+        _write_points(path, stream, content.reshape(-1), layout.point_format, compressor)
+        end = stream.seek(0, os.SEEK_END)
+        stream.write(tail)
+        stream.seek(0)
+        stream.write(las_block.moved(block, was, tail, cloud.evlrs_at, end))
+    read_back(path, partial(_verify, layout=layout, content=content))
+
+
+def _put(record: PackedPointRecord, attribute: PointAttribute) -> None:
+    """Put the stored values of an attribute in its dimension."""
+    if attribute.dimension in (record.array.dtype.names or ()):
+        field = record.array[attribute.dimension]
+        if attribute.component is None:
+            field[:] = attribute.values
+        else:
+            field[:, attribute.component] = attribute.values
+        return
+    largest = record.point_format.dimension_by_name(attribute.dimension).max or 0
+    record[attribute.dimension] = np.minimum(attribute.values, largest)
+
+
+def _has_dimension(record: PackedPointRecord, attribute: PointAttribute) -> bool:
+    return attribute.name in list(record.point_format.dimension_names)
+
+
+def _record_of(cloud: PointCloud, layout: LasLayout) -> PackedPointRecord:
+    """Return the point records, every field in its place."""
+    header = laspy_header("the stored LAS header", layout)
+    record = require_laspy().PackedPointRecord.zeros(cloud.n_points, header.point_format)
+    for attribute in cloud.attributes:
+        category = channel_category(attribute)
+        if category is not None:  # what is carried comes over it
+            dimension, value = category
+            record[dimension] = np.where(attribute.values != 0, value, record[dimension])
+    for name, values in cloud.carried.items():
+        if name in (record.array.dtype.names or ()) and name not in ("X", "Y", "Z"):
+            record.array[name] = values
+    for k, axis in enumerate("XYZ"):
+        record.array[axis] = cloud.integers[:, k]
+    for attribute in cloud.attributes:
+        is_stored = attribute.dimension != HEIGHT_ABOVE_GROUND or _has_dimension(record, attribute)
+        if is_stored and channel_category(attribute) is None:
+            _put(record, attribute)
+    return record
+
+
+def _return_numbers(record: PackedPointRecord) -> NDArray[np.integer]:
+    return np.array(record["return_number"])
+
+
+def _laz_record(path: str | os.PathLike[str], layout: LasLayout) -> Any:
+    """Return lazrs' record on the compression of such points."""
+    try:
+        import lazrs
+    except ImportError as error:
+        raise MissingDependencyError(
+            f"{path}: writing LAZ needs lazrs; install it with 'pip install lazrs'."
+        ) from error
+    n_extra = layout.record_length - RECORD_LENGTHS[layout.point_format]
+    try:
+        return lazrs.LazVlr.new_for_compression(layout.point_format, n_extra)
+    except lazrs.LazrsError as error:
+        raise _not_compressible(path, layout.point_format, error) from error
+
+
+def _write_points(
+    path: str | os.PathLike[str],
+    stream: BinaryIO,
+    content: NDArray[np.uint8],
+    point_format: int,
+    laz: Any,
+) -> None:
+    if laz is None:
+        stream.write(content.data)
+        return
+    import lazrs
+
+    try:
+        # One thread: a pool of them would hang in a process that is forked later.
+        compressor = lazrs.LasZipCompressor(stream, laz)
+        compressor.compress_many(content)
+        compressor.done()
+    except lazrs.LazrsError as error:
+        raise _not_compressible(path, point_format, error) from error
+
+
+def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np.uint8]) -> None:
+    """Read the points back: lazrs loses some waveform references without a word."""
+    back = np.empty_like(content)
+    if not layout.is_compressed:
+        with open(path, "rb") as stream:
+            stream.seek(layout.points_start)
+            n_bytes = stream.readinto(back.reshape(-1).data)
+        if n_bytes != content.nbytes or not np.array_equal(back, content):
+            raise OutputFileError("the points are not those that were written")
+        return
+    job = laz_decoder.Job(
+        path=os.fspath(path),
+        start=layout.points_start,
+        record=laszip_record(os.fspath(path), layout).data,
+        record_length=content.shape[1],
+        n_points=len(content),
+    )
+    try:
+        laz_decoder.decoded(job, back)
+    except laz_decoder.DecodeError as error:
+        raise _not_compressible(path, layout.point_format, error) from error
+    if not np.array_equal(back, content):
+        n_other = int(np.count_nonzero((back != content).any(axis=1)))
+        raise _not_compressible(
+            path, layout.point_format, f"{n_other} of {len(content)} points come back changed"
+        )
+
+
+def _not_compressible(path: Any, point_format: int, why: object) -> OutputFileError:
+    return OutputFileError(
+        f"{path}: points of format {point_format} cannot be written as LAZ ({why}); write .las."
+    )
