@@ -38,7 +38,10 @@ class LevelErrors(NamedTuple):
 
 
 def level_errors(
-    pyramid: Pyramid, progress: Progress | None = None, finest: TriangleMesh | None = None
+    pyramid: Pyramid,
+    progress: Progress | None = None,
+    finest: TriangleMesh | None = None,
+    points: FloatArray | None = None,
 ) -> list[LevelErrors]:
     """Return size and errors of every level, the coarsest first: ``rows[level]``.
 
@@ -50,6 +53,9 @@ def level_errors(
         Called with a fraction in [0, 1] after each level; the work stops when it returns False.
     finest : TriangleMesh, optional
         The pyramid's finest mesh, where it has been synthesised already.
+    points : (n_points, 3) float64, optional
+        Where the surfaces are measured, if not at the vertices of the finest mesh: these, and
+        points that share x and y with them.
 
     Raises
     ------
@@ -57,6 +63,7 @@ def level_errors(
         ``progress`` returned False.
     """
     finest = pyramid.synthesise() if finest is None else finest
+    points = finest.vertices if points is None else points
     reference = _columns(finest)
     extent = reference.max(axis=0) - reference.min(axis=0)
     scale = np.where(extent > 0, extent, 1.0)
@@ -64,7 +71,7 @@ def level_errors(
     for level, mesh in enumerate(pyramid):
         ids = pyramid.vertex_ids(level)
         difference = (_columns(mesh) - reference[ids]) / scale
-        errors = surface_errors(mesh, finest.vertices)
+        errors = surface_errors(mesh, points)
         covered = errors[np.isfinite(errors)]
         rows.append(
             LevelErrors(

@@ -55,7 +55,10 @@ class GeoPyramid:
     notes: tuple[Note, ...] = ()
 
     def with_errors(
-        self, progress: Progress | None = None, finest: TriangleMesh | None = None
+        self,
+        progress: Progress | None = None,
+        finest: TriangleMesh | None = None,
+        points: NDArray[np.float64] | None = None,
     ) -> GeoPyramid:
         """Return the pyramid with the errors of every level computed.
 
@@ -65,14 +68,20 @@ class GeoPyramid:
             Called with a fraction in [0, 1]; returning False stops with `Cancelled`.
         finest : TriangleMesh, optional
             The pyramid's finest mesh, where it has been synthesised already.
+        points : (n_points, 3) float64, optional
+            All input points of the surface in the working frame; by default those that the origin
+            knows, among them the ones that are merged with a vertex.
         """
+        finest = self.pyramid.synthesise() if finest is None else finest
+        if points is None and self.origin.points is not None:
+            points = self.origin.points.points_for_errors(finest, self.frame)
         unit = self.frame.z_scale
         levels = (
             level._replace(
                 rmse_surface=level.rmse_surface / unit,
                 max_error_surface=level.max_error_surface / unit,
             )
-            for level in level_errors(self.pyramid, progress, finest)
+            for level in level_errors(self.pyramid, progress, finest, points)
         )
         return replace(self, errors=tuple(levels))
 

@@ -56,6 +56,9 @@ class Terrain:
         Unit of z in the file.
     notes : tuple of Note
         What is worth telling about it.
+    merged : (n_merged, 3) float64 or None
+        Points in the working frame that share x and y with a vertex which stands for them, where
+        the origin does not keep them.
     """
 
     name: str
@@ -66,12 +69,15 @@ class Terrain:
     frame: LocalFrame
     vertical_unit: str
     notes: tuple[Note, ...] = ()
+    merged: NDArray[np.float64] | None = None
 
     def points_for_errors(self) -> NDArray[np.float64]:
         """Return every input point of the surface in the working frame, merged ones too."""
         points = self.origin.points
         if points is None:
-            return self.mesh.vertices
+            if self.merged is None:
+                return self.mesh.vertices
+            return np.concatenate([self.mesh.vertices, self.merged])
         return points.points_for_errors(self.mesh, self.frame)
 
     def with_notes(self, notes: list[Note]) -> Terrain:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +15,9 @@ from wavelet_core.errors import MeshError
 from wavelet_core.mesh.location import surface_errors
 from wavelet_core.mesh.triangulation import Merged, delaunay_faces, merge_duplicates
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.model.terrain import Terrain, frame_of_bounds, terrain_of_mesh
-from wavelet_gis.notes import collected, note
+from wavelet_gis.notes import collected, warn
 
 __all__ = [
     "ConstrainedTin",
@@ -220,19 +221,18 @@ def terrain_of_points(
         )
     with collected() as notes:
         frame, unit = frame_of_coordinates(name, points, system, vertical_unit)
+        local = frame.to_local(points)
+        merged = merge_duplicates(local)
         try:
-            mesh = TriangleMesh.from_points(frame.to_local(points), attributes, attribute_names)
+            mesh = TriangleMesh.from_points(
+                local[merged.kept], attributes[merged.kept], attribute_names
+            )
         except MeshError as error:
             raise MeshError(f"{name}: {error}", error.index) from error
-        n_merged = len(points) - mesh.n_vertices
-        if n_merged:
-            note(
-                "points_merged",
-                "{name}: {n_merged:,} points share x and y with another; the lowest stands for all",
-                name=name,
-                n_merged=n_merged,
-            )
-    return terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
+        others = np.delete(np.arange(len(points)), merged.kept)
+        _tell_of_merging(name, points, merged, others)
+    terrain = terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
+    return replace(terrain, merged=local[others])
 
 
 def terrain_of_triangles(
@@ -264,6 +264,25 @@ def terrain_of_triangles(
         frame, unit = frame_of_coordinates(name, flat, system, vertical_unit)
     mesh = mesh_of_corners(frame.to_local(flat).reshape(corners.shape))
     return terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
+
+
+def _tell_of_merging(name: str, points: FloatArray, merged: Merged, others: IntArray) -> None:
+    """Warn of the points that a lower one at their place stands for, and how far off they are."""
+    if len(others) == 0:
+        return
+    apart = points[others, 2] - points[merged.kept[merged.representative[others]], 2]
+    warn(
+        PointCloudWarning,
+        "merged_points",
+        "{name}: {n_points} points share x and y with others; the {rule} of each place stands "
+        "for them, up to {largest:.4g} off (root mean square {rms:.4g})",
+        stacklevel=3,
+        name=name,
+        rule="lowest",
+        n_points=len(others),
+        largest=float(apart.max()),
+        rms=float(np.sqrt(np.mean(apart**2))),
+    )
 
 
 def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:

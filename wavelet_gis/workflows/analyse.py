@@ -178,5 +178,5 @@ def analyse(
     geo = terrain.with_notes([*terrain.notes, *notes]).geo_pyramid(pyramid, finest)
     if measure:
         clock.stage("errors")
-        geo = geo.with_errors(part_of(progress, 0.7, 1.0), finest)
+        geo = geo.with_errors(part_of(progress, 0.7, 1.0), finest, terrain.points_for_errors())
     return Analysis(geo, clock.seconds())

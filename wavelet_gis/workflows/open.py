@@ -30,6 +30,14 @@ from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem,
 from wavelet_gis.model.tin import frame_of_coordinates, terrain_of_points, terrain_of_triangles
 from wavelet_gis.notes import collected, warn
 from wavelet_gis.workflows.analyse import Analysis
+from wavelet_gis.workflows.input_options import (
+    CLOUD,
+    POINTS,
+    RASTER,
+    TABLE,
+    TRIANGLES,
+    require_meaning,
+)
 
 __all__ = ["load", "open_data", "open_input", "open_terrain", "origin_kind"]
 
@@ -97,14 +105,7 @@ def open_terrain(
     if suffix_of(path) in CLOUD_SUFFIXES:
         from wavelet_gis.io.las import read_cloud
 
-        if band is not None:
-            raise InputFileError(
-                "{path}: a point cloud has no bands; leave {0} out.", "band", path=path
-            )
-        if nodata is not None:
-            raise InputFileError(
-                "{path}: a point cloud has no nodata; leave {0} out.", "nodata", path=path
-            )
+        require_meaning(path, CLOUD, {"band": band, "nodata": nodata})
         cloud, place = read_cloud(
             path,
             attributes=attributes,
@@ -128,24 +129,20 @@ def open_terrain(
         )
     from wavelet_gis.io.raster import read_dem
 
-    if keep_noise or keep_withheld or max_edge is not None or concave or duplicates != "lowest":
-        raise InputFileError(
-            "{path}: {0}, {1}, {2}, {3} and {4} are for point clouds; leave them out for a raster.",
-            "keep_noise",
-            "keep_withheld",
-            "duplicates",
-            "max_edge",
-            "concave",
-            path=path,
-        )
-    if attributes or classes is not None or class_channels:
-        raise InputFileError(
-            "{path}: {0}, {1} and {2} are for point clouds; leave them out for a raster.",
-            "attributes",
-            "classes",
-            "class_channels",
-            path=path,
-        )
+    require_meaning(
+        path,
+        RASTER,
+        {
+            "attributes": attributes,
+            "classes": classes,
+            "class_channels": class_channels,
+            "keep_noise": keep_noise,
+            "keep_withheld": keep_withheld,
+            "duplicates": duplicates,
+            "max_edge": max_edge,
+            "concave": concave,
+        },
+    )
     dem, place = read_dem(path, band=band, nodata=nodata, offline=offline)
     system = override or coordinate_system(place.wkt)
     unit = vertical_unit or _known_unit(place.vertical_unit)
@@ -257,6 +254,8 @@ def open_input(
         if suffix in (*VECTOR_SUFFIXES, *POINT_TABLE_SUFFIXES) and os.path.isfile(path):
             terrain = _raster_or_vector(path, layer, z_field, options)
         else:
+            kind = CLOUD if suffix in CLOUD_SUFFIXES else RASTER
+            require_meaning(path, kind, {"layer": layer, "z_field": z_field})
             terrain = open_terrain(path, **options)
         _tell_of_scale(terrain)
     return terrain.with_notes(notes)
@@ -322,6 +321,7 @@ def _raster_or_vector(
     path: str | os.PathLike[str], layer: str | None, z_field: str | None, options: dict[str, Any]
 ) -> Terrain:
     names = tuple(options.get("attributes", ()))
+    given = {**options, "layer": layer, "z_field": z_field}
     no_raster: InputFileError | None = None
     if layer is None and z_field is None and not names:
         try:
@@ -335,6 +335,7 @@ def _raster_or_vector(
             from wavelet_gis.io.point_table import read_point_table
 
             table = read_point_table(path, names)
+            require_meaning(path, TABLE, given)
             return terrain_of_points(
                 name, table.points, table.attributes, names, system or CoordinateSystem(), unit
             )
@@ -343,6 +344,7 @@ def _raster_or_vector(
         found = read_vector(path, layer=layer, z_field=z_field, attributes=names)
     except InputFileError as error:
         raise error if no_raster is None or _is_about_content(error) else no_raster from error
+    require_meaning(path, POINTS if found.corners is None else TRIANGLES, given)
     return _terrain_of_vector(name, found, system, unit)
 
 
@@ -367,9 +369,12 @@ def _terrain_of_vector(
 def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) -> Terrain:
     name = type(data).__name__
     system, unit = _system(options), options.get("vertical_unit")
+    given = {**options, "z_field": z_field}
     if isinstance(data, Dem):
+        require_meaning(name, RASTER, given)
         return terrain_of_dem(name, data, system or CoordinateSystem(), unit)
     if isinstance(data, TriangleMesh):
+        require_meaning(name, TRIANGLES, given)
         place = system or CoordinateSystem()
         frame, unit_name = frame_of_coordinates(name, data.vertices, place, unit)
         local = TriangleMesh(
@@ -377,8 +382,10 @@ def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) 
         )
         return terrain_of_mesh(name, local, place, frame, unit_name)
     if all(hasattr(data, part) for part in ("read_masks", "transform", "name")):
+        require_meaning(name, RASTER, given)
         return open_terrain(data.name, **options)  # a rasterio dataset
     if all(hasattr(data, part) for part in ("dims", "coords", "values")):
+        require_meaning(name, RASTER, given)
         return _terrain_of_data_array(data, system, unit)
     if all(hasattr(data, part) for part in ("geometry", "crs", "columns")):
         from wavelet_gis.io.vector_input import vector_terrain
@@ -387,6 +394,7 @@ def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) 
         shapes = np.asarray(data.geometry.values, dtype=object)
         wkt = None if data.crs is None else data.crs.to_wkt()
         found = vector_terrain(name, shapes, data, wkt, z_field=z_field, attributes=names)
+        require_meaning(name, POINTS if found.corners is None else TRIANGLES, given)
         return _terrain_of_vector(name, found, system, unit)
     raise OptionError(
         f"a {name} holds no terrain; give a path, a rasterio dataset, an xarray DataArray, a "

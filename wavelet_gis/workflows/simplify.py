@@ -66,7 +66,9 @@ class Simplified(Surface):
         finest = self.geo.pyramid.synthesise()
         terrain = self.terrain.with_notes(list(self.geo.notes))
         geo = terrain.geo_pyramid(self.geo.pyramid, finest)
-        return Analysis(geo.with_errors(progress, finest) if measure else geo)
+        return Analysis(
+            geo.with_errors(progress, finest, terrain.points_for_errors()) if measure else geo
+        )
 
     def figures(self) -> dict[str, Any]:
         """Return sizes and errors as JSON-able values."""

@@ -123,5 +123,5 @@ def test_too_many_categories_are_no_channels(cloud):
 
 
 def test_channels_of_classes_are_refused_for_a_raster(tmp_path):
-    with pytest.raises(InputFileError, match="class_channels are for point clouds"):
+    with pytest.raises(InputFileError, match="class_channels is for a point cloud"):
         open_terrain(write_tif(tmp_path / "a.tif", hills().astype("f4")), class_channels=True)

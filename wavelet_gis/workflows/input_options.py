@@ -1,0 +1,80 @@
+"""Which options of reading have a meaning for which kind of input."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from wavelet_gis.errors import InputFileError
+
+__all__ = ["CLOUD", "POINTS", "RASTER", "TABLE", "TRIANGLES", "require_meaning"]
+
+RASTER, CLOUD, POINTS, TABLE, TRIANGLES = (
+    "a raster",
+    "a point cloud",
+    "a layer of points",
+    "a table of points",
+    "a layer of triangles",
+)
+
+#: For which kinds of input an option is. The others hold for every input, or of themselves.
+_MEANT_FOR = {
+    "band": (RASTER,),
+    "nodata": (RASTER,),
+    "attributes": (CLOUD, POINTS, TABLE),
+    "classes": (CLOUD,),
+    "class_channels": (CLOUD,),
+    "keep_noise": (CLOUD,),
+    "keep_withheld": (CLOUD,),
+    "duplicates": (CLOUD,),
+    "max_edge": (CLOUD,),
+    "concave": (CLOUD,),
+    "layer": (POINTS, TRIANGLES),
+    "z_field": (POINTS,),
+}
+#: What an option is when nobody has given it; None or False where it is not named here.
+_DEFAULTS = {"duplicates": "lowest", "attributes": ()}
+
+
+def require_meaning(path: object, kind: str, options: Mapping[str, Any]) -> None:
+    """Refuse options that would be ignored.
+
+    Parameters
+    ----------
+    path : path or str
+        Of the input, for the message.
+    kind : str
+        What it is, one of the kinds named in this module.
+    options : mapping of str to value
+        As given; names that are for every kind of input are passed over.
+
+    Raises
+    ------
+    InputFileError
+        An option that this kind of input does not have.
+    """
+    in_vain = [
+        name
+        for name, kinds in _MEANT_FOR.items()
+        if kind not in kinds and _is_given(name, options.get(name))
+    ]
+    if in_vain:
+        names = [f"{{{k}}}" for k in range(len(in_vain))]
+        listed = " and ".join([", ".join(names[:-1]), names[-1]]) if names[1:] else names[0]
+        verb, pronoun = ("are", "them") if names[1:] else ("is", "it")
+        others = " or ".join(_MEANT_FOR[in_vain[0]])
+        raise InputFileError(
+            f"{{path}}: this is {{kind}}, and {listed} {verb} for {{others}}; leave {pronoun} out.",
+            *in_vain,
+            path=path,
+            kind=kind,
+            others=others,
+        )
+
+
+def _is_given(name: str, value: Any) -> bool:
+    if value is None or value is False:
+        return False
+    if name == "attributes":
+        return len(value) > 0
+    return bool(value != _DEFAULTS.get(name))
