@@ -120,7 +120,7 @@ def test_same_bytes_again():
 def test_same_bytes_without_numba():
     """The kernels are one text, compiled or not; the other way round is run in a new process."""
     code = (
-        "import sys; sys.path[:0] = ['tests', 'tests/core']\n"
+        "import sys; sys.path[:0] = ['tests', 'tests/core', 'tests/core/lifting']\n"
         "import test_invariance; print(*test_invariance.designs(60), sep='\\n')"
     )
     outputs = []
