@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import Progress, Pyramid, TriangleMesh
+from wavelet_core import OptionError, Progress, Pyramid, TriangleMesh
 from wavelet_core.metrics import LevelErrors, level_errors
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.model.attributes.categories import Categories, is_category, with_own_values
@@ -147,6 +148,13 @@ class GeoPyramid:
             Categories are those of the nearest input vertex, or, as in the paper, the numbers
             that the filters made of them.
         """
+        if categories not in get_args(Categories):
+            raise OptionError(
+                "{0} is {given!r}; give one of {choices}.",
+                "categories",
+                given=categories,
+                choices=", ".join(get_args(Categories)),
+            )
         own = self.own_categories(mesh) if categories == "nearest" else mesh
         return mesh_in_file(own, self.frame)
 

@@ -327,8 +327,10 @@ def chosen_gains(
     Raises
     ------
     OptionError
-        Bounds in the wrong order, or a level without details.
+        Bounds in the wrong order, a level without details, or a band by levels and by lengths.
     """
+    if levels is not None and metres is not None:
+        raise OptionError("{0} and {1} exclude each other; give one.", "levels", "metres")
     chosen: dict[int, float] = {}
     if metres is not None:
         unit = _metre(geo)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from itertools import chain
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -153,6 +153,13 @@ def write_pyramid_file(
     """
     from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
 
+    if layers not in get_args(Layers):
+        raise OptionError(
+            "{0} is {given!r}; give one of {choices}.",
+            "layers",
+            given=layers,
+            choices=", ".join(get_args(Layers)),
+        )
     check_output(path, overwrite=True, suffixes=(PYRAMID_SUFFIX,))
     write_pyramid(path, geo, progress)
     if layers == "none":

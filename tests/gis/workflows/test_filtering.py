@@ -7,6 +7,7 @@ from gis.samples import hills, write_tif
 from wavelet_core import OptionError, analyse
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.workflows import filtering
+from wavelet_gis.workflows.analyse import Analysis
 from wavelet_gis.workflows.filtering import (
     chosen_gains,
     denoised,
@@ -14,6 +15,7 @@ from wavelet_gis.workflows.filtering import (
     with_level_gains,
 )
 from wavelet_gis.workflows.open import open_terrain
+from wavelet_gis.workflows.save import save
 
 
 @pytest.fixture(scope="module")
@@ -67,3 +69,17 @@ def test_noise_in_units_of_the_input_moves_z_in_units_of_the_input(tmp_path):
     clean = filter_pyramid(geo, denoise=True, n_pyramids=2)
     assert clean.sigmas["z"] == pytest.approx(0.5, rel=0.15)
     assert clean.change()[0] == pytest.approx(0.5, rel=0.25)
+
+
+def test_a_band_by_levels_and_by_lengths_is_a_contradiction(in_feet):
+    with pytest.raises(OptionError, match="exclude each other") as error:
+        filter_pyramid(in_feet, levels=(0, 1), metres=(1.0, 50.0))
+    assert set(error.value.options) == {"levels", "metres"}
+
+
+def test_names_that_no_list_holds_are_refused(in_feet, tmp_path):
+    with pytest.raises(OptionError, match="'majority'; give one of nearest, number"):
+        in_feet.file_mesh(in_feet.pyramid.mesh(0), categories="majority")
+    with pytest.raises(OptionError, match="'most'; give one of all, coarse, none"):
+        save(Analysis(in_feet), tmp_path / "a.gpkg", layers="most")
+    assert list(tmp_path.iterdir()) == []
