@@ -144,7 +144,7 @@ class Details:
             write_bands(path, bands, self.geo.system.wkt)
             return {"bands": list(bands.names), "shape": list(bands.geometry.shape)}
         if suffix == PYRAMID_SUFFIX:
-            from wavelet_gis.io.vector import add_layers
+            from wavelet_gis.io.vector.vector_writer import add_layers
 
             layer = self.layer(progress)
             add_layers(path, [layer], self.geo.system)

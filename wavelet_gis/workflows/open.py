@@ -332,14 +332,14 @@ def _raster_or_vector(
     system, unit = _system(options), options.get("vertical_unit")
     try:
         if suffix_of(path) in POINT_TABLE_SUFFIXES:
-            from wavelet_gis.io.point_table import read_point_table
+            from wavelet_gis.io.vector.point_table import read_point_table
 
             table = read_point_table(path, names)
             require_meaning(path, TABLE, given)
             return terrain_of_points(
                 name, table.points, table.attributes, names, system or CoordinateSystem(), unit
             )
-        from wavelet_gis.io.vector_input import read_vector
+        from wavelet_gis.io.vector.vector_reader import read_vector
 
         found = read_vector(path, layer=layer, z_field=z_field, attributes=names)
     except InputFileError as error:
@@ -388,7 +388,7 @@ def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) 
         require_meaning(name, RASTER, given)
         return _terrain_of_data_array(data, system, unit)
     if all(hasattr(data, part) for part in ("geometry", "crs", "columns")):
-        from wavelet_gis.io.vector_input import vector_terrain
+        from wavelet_gis.io.vector.vector_reader import vector_terrain
 
         names = tuple(options.get("attributes", ()))
         shapes = np.asarray(data.geometry.values, dtype=object)

@@ -164,7 +164,7 @@ def write_pyramid_file(
     write_pyramid(path, geo, progress)
     if layers == "none":
         return
-    from wavelet_gis.io.vector import add_layers
+    from wavelet_gis.io.vector.vector_writer import add_layers
     from wavelet_gis.products.layers import coarse_layers, detail_layers
 
     details = detail_layers(geo) if layers == "all" else ()
@@ -201,7 +201,7 @@ def write_tin(
         See `wavelet_gis.model.geo_pyramid.GeoPyramid.file_mesh`.
     """
     if suffix_of(path) == PYRAMID_SUFFIX:
-        from wavelet_gis.io.vector import add_layers
+        from wavelet_gis.io.vector.vector_writer import add_layers
         from wavelet_gis.products.layers import tin_layers
 
         add_layers(path, tin_layers(geo, mesh, vertex_ids, name, categories), geo.system)

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from gis.io.test_las_round_trip import las_bytes, through_a_file
+from gis.io.las.test_las_round_trip import las_bytes, through_a_file
 from gis.samples import write_las
 from hypothesis import given
 from hypothesis import strategies as st

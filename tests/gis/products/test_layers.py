@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
-from wavelet_gis.io.vector import add_layers
+from wavelet_gis.io.vector.vector_writer import add_layers
 from wavelet_gis.products.layers import coarse_layers, detail_layers, slopes, tin_layers
 from wavelet_gis.products.styles import detail_style, tin_style, vertex_style
 from wavelet_gis.products.wkb import points_wkb, triangles_wkb

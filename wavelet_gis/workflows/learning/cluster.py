@@ -105,7 +105,7 @@ class Labelled:
 
             write_bands(path, self.raster(cell_size), self.geo.system.wkt)
         else:
-            from wavelet_gis.io.vector import add_layers
+            from wavelet_gis.io.vector.vector_writer import add_layers
 
             add_layers(path, [self.layer()], self.geo.system)
 

@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import pytest
-from gis.io.test_las_round_trip import las_bytes, record
+from gis.io.las.test_las_round_trip import las_bytes, record
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

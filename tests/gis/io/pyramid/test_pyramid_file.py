@@ -117,7 +117,7 @@ def test_it_is_valid_without_layers(cloud_pyramid, validate_gpkg):
 
 def test_the_same_input_gives_the_same_bytes(raster_record, tmp_path, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    from wavelet_gis.io.vector import add_layers
+    from wavelet_gis.io.vector.vector_writer import add_layers
     from wavelet_gis.products.layers import coarse_layers, detail_layers
 
     for name in ("a.gpkg", "b.gpkg"):

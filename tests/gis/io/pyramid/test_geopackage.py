@@ -150,7 +150,7 @@ def test_what_never_ends_is_ended(tmp_path):
 def test_layers_are_dated_alike_whatever_else_the_process_writes(
     raster_record, tmp_path, monkeypatch
 ):
-    from wavelet_gis.io.vector import add_layers
+    from wavelet_gis.io.vector.vector_writer import add_layers
     from wavelet_gis.products.layers import coarse_layers
 
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")

@@ -1,0 +1,1 @@
+"""Vector layers and tables of points: read, and written."""
