@@ -33,7 +33,11 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-COMMAND = "import sys; from wavelet_gis.cli import main; sys.exit(main(sys.argv[1:]))"
+#: The command's function, which was in the package itself before it was in a module of that name.
+COMMAND = (
+    "import sys; from wavelet_gis.cli import main as found; "
+    "sys.exit(getattr(found, 'main', found)(sys.argv[1:]))"
+)
 WHERE = "import wavelet_gis; print(wavelet_gis.__path__[0])"
 LIMIT_SECONDS = 3600
 
