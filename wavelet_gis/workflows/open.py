@@ -308,12 +308,15 @@ def origin_kind(path: str | os.PathLike[str]) -> str:
 
 
 def _holds_pyramid(path: str | os.PathLike[str]) -> bool:
+    from wavelet_gis.io.geopackage import is_system_fault
     from wavelet_gis.io.pyramid.pyramid_file import read_summary
 
     try:
         read_summary(path)
-    except InputFileError:  # no GeoPackage, or one without our tables
-        return False
+    except InputFileError as error:
+        if is_system_fault(error):
+            raise
+        return False  # no GeoPackage, or one without our tables
     return True
 
 
