@@ -346,7 +346,10 @@ def _raster_or_vector(
 
         found = read_vector(path, layer=layer, z_field=z_field, attributes=names)
     except InputFileError as error:
-        raise error if no_raster is None or _is_about_content(error) else no_raster from error
+        is_table = suffix_of(path) in POINT_TABLE_SUFFIXES
+        if no_raster is None or is_table or _is_about_content(error):
+            raise
+        raise no_raster from error
     require_meaning(path, POINTS if found.corners is None else TRIANGLES, given)
     return _terrain_of_vector(name, found, system, unit)
 
