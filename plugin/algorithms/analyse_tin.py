@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from qgis.core import (
@@ -257,7 +258,7 @@ class AnalyseTin(AnalysisAlgorithm):
         from wavelet_core import TriangleMesh
         from wavelet_gis.model.drape import default_tolerance, drape
         from wavelet_gis.model.terrain import terrain_of_mesh
-        from wavelet_gis.model.tin import frame_of_coordinates, tin_with_lines
+        from wavelet_gis.model.tin import frame_of_coordinates, points_merged, tin_with_lines
 
         from ..qgis_io.constraints import read_constraints
         from ..qgis_io.vectors import read_points
@@ -325,7 +326,8 @@ class AnalyseTin(AnalysisAlgorithm):
         self.locked = tin.is_marked
         if request.flag("LOCK_BREAKLINES"):
             self.locked = tin.is_marked | tin.is_on_line | tin.is_on_outline
-        return terrain_of_mesh(name, tin.mesh, system, frame, unit)
+        merged = points_merged(name, points.xyz[inside], local[inside])
+        return replace(terrain_of_mesh(name, tin.mesh, system, frame, unit), merged=merged)
 
 
 def _first_of(request: Request, *names: str) -> float | None:

@@ -177,3 +177,23 @@ def test_noise_by_place_with_a_range_and_outliers_is_told(tmp_path, capsys):
     thresholds = ["--denoise", "--pyramids", "0", "--noise-range", "30", "--overwrite"]
     assert main(["filter", pyramid, out, *thresholds]) == 1
     assert "thresholds know white noise only" in capsys.readouterr().err
+
+
+def test_outliers_that_pass_through_are_told(done, tmp_path):
+    """Fifteen spikes of 60 m used to come through a denoising without a word."""
+    rng = np.random.default_rng(4)
+    rows, columns = np.mgrid[:60, :60]
+    terrain = 300 + 40 * np.sin(columns / 9) * np.cos(rows / 7)
+    noisy = terrain + rng.normal(0, 0.3, terrain.shape)
+    spikes = rng.choice(np.arange(61, 3539, 7), 15, replace=False)
+    noisy.flat[spikes] += 60
+    for name, values in (("spikes", noisy), ("hills", terrain)):
+        source = write_tif(tmp_path / f"{name}.tif", values)
+        done("analyse", source, tmp_path / f"{name}.gpkg", "--partition", "quadric", "--quiet")
+    spiky = tmp_path / "spikes.gpkg"
+    said = done("filter", spiky, tmp_path / "a.tif", "--denoise")
+    assert "(15 here; --outliers replaces them)" in said.err
+    assert done("filter", spiky, tmp_path / "b.tif", "--denoise", "--outliers").err == ""
+    assert done("filter", tmp_path / "hills.gpkg", tmp_path / "c.tif", "--denoise").err == ""
+    with rasterio.open(tmp_path / "b.tif") as dataset:
+        assert np.std(dataset.read(1) - terrain) < 0.2

@@ -48,10 +48,15 @@ def test_a_locked_file_is_called_locked(found, command, done):
     other = sqlite3.connect("p.gpkg", isolation_level=None)
     other.execute("BEGIN EXCLUSIVE")
     try:
-        outcome = command("info", "p.gpkg")
+        outcomes = [
+            command("info", "p.gpkg"),
+            command("analyse", "p.gpkg", "q.gpkg"),
+            command("simplify", "p.gpkg", "q.ply", "--vertices", 50),
+        ]
     finally:
         other.close()
-    assert outcome.code == 1
-    assert "another program holds the file locked" in outcome.err
-    assert "damaged" not in outcome.err
+    for outcome in outcomes:
+        assert outcome.code == 1
+        assert "another program holds the file locked" in outcome.err
+        assert "damaged" not in outcome.err
     done("info", "p.gpkg")

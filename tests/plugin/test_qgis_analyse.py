@@ -324,6 +324,20 @@ class TestPointsAndTins:
             inside = min(xs) >= 700100 - 1e-6 and max(xs) <= 700900 + 1e-6
             assert not (inside and min(ys) < 6600499 and max(ys) > 6600501)
 
+    def test_points_of_one_place_are_told_and_counted(self, run, tmp_path):
+        from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
+
+        xyz = survey()
+        layer = point_layer(np.concatenate([xyz, xyz[:30] + np.array([0.0, 0.0, 12.0])]))
+        log = Log()
+        output = str(tmp_path / "p.gpkg")
+        run("analysetin", {"INPUT": layer, "LEVELS": 2, "OUTPUT": output}, feedback=log)
+        (told,) = [line for line in log.warnings if "share x and y" in line]
+        assert "30 points share x and y with others; the lowest" in told
+        assert "up to 12 off" in told
+        errors = read_pyramid(output).errors
+        assert min(level.max_error_surface for level in errors) == pytest.approx(12.0)
+
     def test_lines_without_z_lie_on_the_terrain_at_all_of_their_points(self, run, tmp_path):
         from scipy.interpolate import LinearNDInterpolator
 

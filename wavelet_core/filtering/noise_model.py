@@ -56,6 +56,8 @@ class Noise:
         Step to which the values were rounded; 0 where none was found.
     plan : ndarray, shape (n_vertices, 2), or None
         Where the noise is, if it is correlated.
+    n_standing_out : int
+        Values that would be outliers, had they been asked for; they are still there.
     """
 
     sigma: float
@@ -64,6 +66,7 @@ class Noise:
     outliers: IntArray | None = None
     quantum: float = 0.0
     plan: FloatArray | None = None
+    n_standing_out: int = 0
 
     @property
     def is_plain(self) -> bool:
@@ -162,14 +165,15 @@ def noise_of(
     quantum = 0.0
     if sigma is None:
         quantum = rounding_step(values)
-    found = None
-    if outliers:
-        found, values = without_outliers(mesh, values, sigma, quantum)
-        tick()
+    standing_out, without = without_outliers(mesh, values, sigma, quantum)
+    tick()
+    found = standing_out if outliers else None
+    values = without if outliers else values
     noise = Noise(
         _floored(estimate_noise(mesh, values), quantum) if sigma is None else float(sigma),
         outliers=found,
         quantum=quantum,
+        n_standing_out=0 if outliers else len(standing_out),
     )
     if (noise_range == 0.0 and not local_noise) or not len(mesh.faces) or np.ptp(values) == 0:
         return noise, values

@@ -23,6 +23,7 @@ __all__ = [
     "check_database",
     "check_rows",
     "create_geopackage",
+    "is_system_fault",
     "open_for_writing",
     "open_untrusted",
     "ordinary_columns",
@@ -228,7 +229,18 @@ def _bound(
     connection.set_progress_handler(lambda: next(looks) > most, looks_every)
 
 
-def _system_fault(error: Exception) -> str | None:
+def is_system_fault(error: BaseException) -> bool:
+    """Whether a file could not be read for no fault of its own: it is locked, or out of reach.
+
+    Parameters
+    ----------
+    error : exception
+        That `open_stranger` raised.
+    """
+    return error.__cause__ is not None and _system_fault(error.__cause__) is not None
+
+
+def _system_fault(error: BaseException) -> str | None:
     """Return what hinders the system, and the remedy; None where the file itself is at fault."""
     code = getattr(error, "sqlite_errorname", "SQLITE_")
     if code in ("SQLITE_IOERR_SHORT_READ", "SQLITE_IOERR_CORRUPTFS"):
@@ -237,7 +249,7 @@ def _system_fault(error: Exception) -> str | None:
     return f"{_FAULTS[word]} ({_short(error)}); {_REMEDIES[word]}" if word in _FAULTS else None
 
 
-def _short(error: Exception) -> str:
+def _short(error: BaseException) -> str:
     """Return SQLite's words in one line; it may quote a damaged schema at length."""
     words = " ".join(str(error).split())
     return words if len(words) <= 120 else f"{words[:117]}..."

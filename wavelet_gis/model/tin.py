@@ -23,6 +23,7 @@ __all__ = [
     "ConstrainedTin",
     "frame_of_coordinates",
     "mesh_of_corners",
+    "points_merged",
     "terrain_of_points",
     "terrain_of_triangles",
     "tin_with_lines",
@@ -152,6 +153,47 @@ def mesh_of_corners(corners: FloatArray) -> TriangleMesh:
     return TriangleMesh.from_triangles(vertices, faces[~is_flat])
 
 
+def points_merged(name: str, points: FloatArray, local: FloatArray) -> FloatArray:
+    """Return the points that a lower one at their place stands for, and warn of them.
+
+    Parameters
+    ----------
+    name : str
+        For the warning.
+    points : ndarray, shape (n_points, 3)
+        x, y, z in the CRS.
+    local : ndarray, shape (n_points, 3)
+        The same in the working frame.
+
+    Returns
+    -------
+    ndarray, shape (n_merged, 3)
+        In the working frame.
+
+    Warns
+    -----
+    PointCloudWarning
+        How many they are, and how far they are from what stands for them.
+    """
+    merged = merge_duplicates(local)
+    others = np.delete(np.arange(len(points)), merged.kept)
+    if len(others):
+        apart = points[others, 2] - points[merged.kept[merged.representative[others]], 2]
+        warn(
+            PointCloudWarning,
+            "merged_points",
+            "{name}: {n_points} points share x and y with others; the {rule} of each place stands "
+            "for them, up to {largest:.4g} off (root mean square {rms:.4g})",
+            stacklevel=3,
+            name=name,
+            rule="lowest",
+            n_points=len(others),
+            largest=float(apart.max()),
+            rms=float(np.sqrt(np.mean(apart**2))),
+        )
+    return local[others]
+
+
 def frame_of_coordinates(
     name: str, coordinates: FloatArray, system: CoordinateSystem, vertical_unit: str | None = None
 ) -> tuple[LocalFrame, str]:
@@ -222,17 +264,13 @@ def terrain_of_points(
     with collected() as notes:
         frame, unit = frame_of_coordinates(name, points, system, vertical_unit)
         local = frame.to_local(points)
-        merged = merge_duplicates(local)
         try:
-            mesh = TriangleMesh.from_points(
-                local[merged.kept], attributes[merged.kept], attribute_names
-            )
+            mesh = TriangleMesh.from_points(local, attributes, attribute_names)
         except MeshError as error:
             raise MeshError(f"{name}: {error}", error.index) from error
-        others = np.delete(np.arange(len(points)), merged.kept)
-        _tell_of_merging(name, points, merged, others)
+        merged = points_merged(name, points, local)
     terrain = terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
-    return replace(terrain, merged=local[others])
+    return replace(terrain, merged=merged)
 
 
 def terrain_of_triangles(
@@ -264,25 +302,6 @@ def terrain_of_triangles(
         frame, unit = frame_of_coordinates(name, flat, system, vertical_unit)
     mesh = mesh_of_corners(frame.to_local(flat).reshape(corners.shape))
     return terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
-
-
-def _tell_of_merging(name: str, points: FloatArray, merged: Merged, others: IntArray) -> None:
-    """Warn of the points that a lower one at their place stands for, and how far off they are."""
-    if len(others) == 0:
-        return
-    apart = points[others, 2] - points[merged.kept[merged.representative[others]], 2]
-    warn(
-        PointCloudWarning,
-        "merged_points",
-        "{name}: {n_points} points share x and y with others; the {rule} of each place stands "
-        "for them, up to {largest:.4g} off (root mean square {rms:.4g})",
-        stacklevel=3,
-        name=name,
-        rule="lowest",
-        n_points=len(others),
-        largest=float(apart.max()),
-        rms=float(np.sqrt(np.mean(apart**2))),
-    )
 
 
 def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:

@@ -13,10 +13,12 @@ from wavelet_core import OptionError, Progress, Pyramid, TriangleMesh, band_gain
 from wavelet_core.filtering.gains import channel_index
 from wavelet_core.filtering.noise import estimate_noise
 from wavelet_core.filtering.noise_model import Noise, RangeOption
+from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
 from wavelet_gis.model.attributes.categories import category_gains
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.notes import warn
 from wavelet_gis.progress import part_of
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, require_levels
 from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
@@ -289,6 +291,7 @@ def denoised(
             progress=part,
         )
         noise = found[name]
+        _tell_of_outliers(geo.source_name, name, noise)
         sigmas[name] = noise.sigma / unit
         in_file = replace(
             noise,
@@ -301,6 +304,22 @@ def denoised(
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
     line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
     return geo.with_pyramid(pyramid, line), sigmas
+
+
+def _tell_of_outliers(source: str, channel: str, noise: Noise) -> None:
+    """Warn of values that denoising passes through, since no noise is like them."""
+    if noise.n_standing_out:
+        warn(
+            TerrainWarning,
+            "outliers_left",
+            "{name}: outliers of {channel}, values that stand out of their neighbours far above "
+            "the noise, are left as they are ({n_values} here; {0} replaces them)",
+            "outliers",
+            stacklevel=4,
+            name=source,
+            n_values=noise.n_standing_out,
+            channel=channel,
+        )
 
 
 def chosen_gains(

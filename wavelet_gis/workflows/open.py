@@ -308,12 +308,15 @@ def origin_kind(path: str | os.PathLike[str]) -> str:
 
 
 def _holds_pyramid(path: str | os.PathLike[str]) -> bool:
+    from wavelet_gis.io.geopackage import is_system_fault
     from wavelet_gis.io.pyramid.pyramid_file import read_summary
 
     try:
         read_summary(path)
-    except InputFileError:  # no GeoPackage, or one without our tables
-        return False
+    except InputFileError as error:
+        if is_system_fault(error):
+            raise
+        return False  # no GeoPackage, or one without our tables
     return True
 
 
@@ -343,7 +346,10 @@ def _raster_or_vector(
 
         found = read_vector(path, layer=layer, z_field=z_field, attributes=names)
     except InputFileError as error:
-        raise error if no_raster is None or _is_about_content(error) else no_raster from error
+        is_table = suffix_of(path) in POINT_TABLE_SUFFIXES
+        if no_raster is None or is_table or _is_about_content(error):
+            raise
+        raise no_raster from error
     require_meaning(path, POINTS if found.corners is None else TRIANGLES, given)
     return _terrain_of_vector(name, found, system, unit)
 

@@ -133,3 +133,11 @@ def test_errors_of_levels_count_merged_points(rule, tmp_path):
         off = np.abs(np.ma.compressed(found - np.asarray(stored.z)))
         assert len(off) > 0.97 * len(stored.points)
         assert row.max_error_surface == pytest.approx(off.max(), rel=1e-6)
+
+
+def test_a_table_that_is_no_text_is_not_called_a_raster(tmp_path):
+    path = tmp_path / "random.csv"
+    path.write_bytes(np.random.default_rng(1).bytes(2000))
+    with pytest.raises(InputFileError, match="it is not text") as caught:
+        wavelet_gis.open(path)
+    assert "raster" not in str(caught.value)
