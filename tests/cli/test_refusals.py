@@ -152,8 +152,8 @@ def test_the_input_is_not_overwritten(refused, pyramid, tmp_path):
         (["a.tif"], ".gpkg"),
         (["a"], ".gpkg"),
         (["a.gpkg", "--band", "4"], "no band 4"),
-        (["a.gpkg", "--attributes", "intensity"], "point clouds"),
-        (["a.gpkg", "--classes", "2"], "point clouds"),
+        (["a.gpkg", "--attributes", "intensity"], "--attributes is for a point cloud"),
+        (["a.gpkg", "--classes", "2"], "--classes is for a point cloud"),
         (["a.gpkg", "--crs", "Atlantis"], "EPSG:2154"),
         (["a.gpkg", "--vertical-unit", "cubit"], "metre, foot"),
         (["a.gpkg", "--design", "XYZ"], "XYZ"),
@@ -186,7 +186,7 @@ def test_a_parameter_has_the_name_of_its_command_s_flag(refused, tif, pyramid, t
 def test_options_that_do_not_fit_a_cloud(refused, las, out):
     assert "classes in the file are 2, 5" in refused("analyse", las, out, "--classes", "9")
     assert "no dimension 'colour'" in refused("analyse", las, out, "--attributes", "colour")
-    assert "bands" in refused("analyse", las, out, "--band", "1")
+    assert "--band is for a raster" in refused("analyse", las, out, "--band", "1")
 
 
 def test_height_above_ground_without_ground(refused, tmp_path, out):
