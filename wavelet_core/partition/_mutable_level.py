@@ -98,6 +98,9 @@ class SurfaceLevel:
         outline vertex goes only where the outline runs straight.
     """
 
+    #: Whether the removed vertices are kept, face by face, and the errors at them.
+    keeps_points = True
+
     def __init__(
         self,
         plan: FloatArray,
@@ -137,7 +140,8 @@ class SurfaceLevel:
         self._outline = tolerant_outline(
             outline_tolerance, self._surface.x, self._surface.y, self._mesh, n_fans
         )
-        n_corners, n_stars = (3 * n_faces, n_vertices) if with_update else (0, 0)
+        has_moments = with_update and self.keeps_points
+        n_corners, n_stars = (3 * n_faces, n_vertices) if has_moments else (0, 0)
         self._moments = Moments(
             np.zeros((n_corners, n_channels), np.float32),
             np.zeros(n_corners, np.float32),
@@ -439,7 +443,7 @@ class SurfaceLevel:
         self._faces = self._faces.packed(faces)
         if len(self._outline.ids):
             self._outline = self._outline._replace(ids=self._vertices.ids)
-        if self._with_update:
+        if len(self._moments.weight):
             n_channels = self._moments.slope.shape[1]
             self._moments = Moments(
                 self._moments.slope.reshape(-1, 3, n_channels)[faces].reshape(-1, n_channels),
