@@ -187,7 +187,7 @@ class _Analysis:
         self._horizontal = mesh.vertices[:, :2] if self._in_plan else None
         self._locked = locked
         self._integrals = np.ones(mesh.n_vertices)
-        self._scale = _Normalisation(mesh, options)
+        self._scale = Normalisation(mesh, options.attribute_weights)
 
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
@@ -358,15 +358,15 @@ class _Analysis:
         report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
 
 
-class _Normalisation:
+class Normalisation:
     """Centre and range of the input's columns, by which cost and prediction measure."""
 
-    def __init__(self, mesh: TriangleMesh, options: AnalysisOptions) -> None:
+    def __init__(self, mesh: TriangleMesh, attribute_weights: Sequence[float]) -> None:
         columns = [*mesh.vertices.T, *mesh.attributes.T]
         low = np.array([column.min() for column in columns])
         extent = np.array([np.ptp(column) for column in columns])
         self._centre = low + extent / 2
-        weights = np.array((1.0, 1.0, 1.0, *options.attribute_weights))
+        weights = np.array((1.0, 1.0, 1.0, *attribute_weights))
         self._factor = weights / np.where(extent > 0, extent, 1.0)
         height = extent[2] if extent[2] > 0 else 1.0
         self._height_weights = np.maximum(self._factor[2:], LEAST_WEIGHT) * height

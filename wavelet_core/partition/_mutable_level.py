@@ -110,15 +110,30 @@ class SurfaceLevel:
         with_update: bool,
         outline_tolerance: float = 0.0,
     ) -> None:
-        n_vertices, n_faces, n_channels = len(plan), len(faces), heights.shape[1]
-        self._mesh, n_fans = _half_edges(faces, n_vertices)
         centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
         # about a local origin also vertically, so that sums of squares keep their digits
         self._z_origin = heights.min(axis=0) + np.ptp(heights, axis=0) / 2
-        local = heights - self._z_origin
+        self._least_limit = (NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))) ** 2
+        self._cost_limit = 0.0
+        self._set_up(plan - centre, heights - self._z_origin, faces, locked, with_update,
+                     outline_tolerance, HEIGHT_STEP * float(np.abs(heights).max()))  # fmt: skip
+
+    def _set_up(
+        self,
+        plan: FloatArray,
+        local: FloatArray,
+        faces: NDArray[np.int32],
+        locked: NDArray[np.bool_],
+        with_update: bool,
+        outline_tolerance: float,
+        height_step: float,
+    ) -> None:
+        """Make the arrays; x, y and heights are from their local origins."""
+        n_vertices, n_faces, n_channels = len(plan), len(faces), local.shape[1]
+        self._mesh, n_fans = _half_edges(faces, n_vertices)
         self._surface = Surface(
-            np.ascontiguousarray(plan[:, 0] - centre[0]),
-            np.ascontiguousarray(plan[:, 1] - centre[1]),
+            np.ascontiguousarray(plan[:, 0]),
+            np.ascontiguousarray(plan[:, 1]),
             local.copy(),
             local,
         )
@@ -132,9 +147,7 @@ class SurfaceLevel:
         self._n_used = 0
         self.n_input = n_vertices
         self.n_vertices = n_vertices
-        self._height_step = HEIGHT_STEP * float(np.abs(heights).max())
-        self._least_limit = (NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))) ** 2
-        self._cost_limit = 0.0
+        self._height_step = height_step
         self._vertices = VertexState.of_input(locked, locked | (n_fans != 1))
         self._faces = FaceState.of_input(n_faces, n_channels)
         self._outline = tolerant_outline(

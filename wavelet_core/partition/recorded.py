@@ -110,24 +110,16 @@ class RecordedLevel(SurfaceLevel):
     keeps_points = False
 
     def __init__(self, start: Start, manner: Manner) -> None:
-        super().__init__(
+        self._set_up(
             start.plan,
             start.heights,
             start.faces,
             start.locked,
             manner.with_update,
             manner.outline_tolerance,
+            manner.height_step,
         )
-        # the local origins are those of the input, which is the start only of the first record
-        self._surface = self._surface._replace(
-            x=np.ascontiguousarray(start.plan[:, 0]),
-            y=np.ascontiguousarray(start.plan[:, 1]),
-            z=start.heights.copy(),
-        )
-        if len(self._outline.ids):
-            self._outline = self._outline._replace(x=self._surface.x, y=self._surface.y)
         self._vertices.integrals[:] = start.integrals
-        self._height_step = manner.height_step
 
     @property
     def local_heights(self) -> FloatArray:
@@ -342,23 +334,30 @@ class Reader:
                 raise PyramidError("answers to no question; the file is damaged.")
 
 
-def record(level: RecordedLevel, steps: Sequence[CollapseStep]) -> Answers | None:
-    """Return the answers that tell the steps from ``level`` on; None where no answers do.
+def record(
+    level: RecordedLevel, steps: Sequence[CollapseStep], weights: FloatArray
+) -> Answers | None:
+    """Return the answers that tell the steps from ``level`` on; None where they do not to the bit.
 
     Parameters
     ----------
     level : RecordedLevel
         Where they start; it is left where they end.
     steps : sequence of CollapseStep
-        The finest first, of which only the vertices and targets are looked at.
+        The finest first; their details are in input units.
+    weights : (c,) float64
+        What the level's heights are in, by those.
     """
     writer = Writer()
     for step in steps:
+        if len(step.odd) == 0 or not (np.diff(step.odd) > 0).all():
+            return None
         try:
             taken = level.take(writer, step)
         except PyramidError:
             return None
-        if not np.array_equal(taken.odd, step.odd):
+        taken = taken._replace(details=taken.details / weights)
+        if not all(np.array_equal(one, other) for one, other in zip(taken, step, strict=True)):
             return None
     return writer.answers()
 
