@@ -161,7 +161,7 @@ def write_pyramid_file(
             choices=", ".join(get_args(Layers)),
         )
     check_output(path, overwrite=True, suffixes=(PYRAMID_SUFFIX,))
-    write_pyramid(path, geo, progress)
+    write_pyramid(path, geo, progress, is_alone=layers == "none")
     if layers == "none":
         return
     from wavelet_gis.io.vector.vector_writer import add_layers
