@@ -44,7 +44,11 @@ def forecast_collapses(
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     x, y, z = surface.x, surface.y, surface.z
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
-    ring_x, ring_y, ring_z = np.empty(MAX_RING), np.empty(MAX_RING), np.empty((MAX_RING, z.shape[1]))
+    ring_x, ring_y, ring_z = (
+        np.empty(MAX_RING),
+        np.empty(MAX_RING),
+        np.empty((MAX_RING, z.shape[1])),
+    )
     order, cover = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
     own_error, distance = np.empty(MAX_RING), np.empty(MAX_RING)
     cover_weights = np.empty((2, MAX_RING))
@@ -68,7 +72,11 @@ def match_targets(
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     x, y, z = surface.x, surface.y, surface.z
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
-    ring_x, ring_y, ring_z = np.empty(MAX_RING), np.empty(MAX_RING), np.empty((MAX_RING, z.shape[1]))
+    ring_x, ring_y, ring_z = (
+        np.empty(MAX_RING),
+        np.empty(MAX_RING),
+        np.empty((MAX_RING, z.shape[1])),
+    )
     order, cover = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
     own_error, distance = np.empty(MAX_RING), np.empty(MAX_RING)
     cover_weights = np.empty((2, MAX_RING))

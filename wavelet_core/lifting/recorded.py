@@ -223,7 +223,8 @@ def part_of(
         The record tells no levels on these vertices.
     """
     part, frame = record.parts[index], record.frame
-    assert part.ids is not None and part.faces is not None
+    assert part.ids is not None
+    assert part.faces is not None
     manner = _manner_of(update, parameters, frame)
     is_locked = np.zeros(len(plan), dtype=bool) if locked is None else locked
     begun = part._asdict()
@@ -238,7 +239,8 @@ def part_of(
         if below is not part:
             ids = ids[level.ids]
             of_below = below._asdict()
-            _require(np.array_equal(part.ids[ids], below.ids), "a part that begins at no level")
+            begins = below.ids if below.ids is not None else np.empty(0, np.int32)
+            _require(np.array_equal(part.ids[ids], begins), "a part that begins at no level")
             start = _part_start(of_below, plan[ids], is_locked[ids], frame, manner)
             level = RecordedLevel(start, manner)
         steps.extend(replay(level, below.answers))
@@ -396,5 +398,3 @@ def _coarse(
 def _require(holds: bool, fault: str) -> None:
     if not holds:
         raise PyramidError(f"the pyramid has {fault}; the file is damaged, analyse the input anew.")
-
-

@@ -15,8 +15,8 @@ where the steps by themselves have 4 and 2.3.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -206,9 +206,7 @@ class RecordedLevel(SurfaceLevel):
         is_first = True
         while len(active):
             wins = np.empty(len(active), dtype=bool)
-            run_in_ranges(
-                find_cheapest, len(active), active, self._mesh, state, cost, key, wins
-            )
+            run_in_ranges(find_cheapest, len(active), active, self._mesh, state, cost, key, wins)
             asked = active[wins]
             classes = _going_classes(codes[asked], middle, is_first)
             goes = pen.going(classes, None if is_odd is None else is_odd[asked])
@@ -357,7 +355,8 @@ def record(
         except PyramidError:
             return None
         taken = taken._replace(details=taken.details / weights)
-        if not all(np.array_equal(one, other) for one, other in zip(taken, step, strict=True)):
+        pairs: Iterable[tuple[Any, Any]] = zip(taken, step, strict=True)
+        if not all(np.array_equal(one, other) for one, other in pairs):
             return None
     return writer.answers()
 

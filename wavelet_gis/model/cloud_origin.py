@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.gaps import PointGaps, faces_within, gaps_of
-from wavelet_core.mesh.triangulation import delaunay_faces
+from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError, PointCloudWarning
@@ -212,6 +212,14 @@ class CloudOrigin:
         of_vertices[self.shifts[:, 0], 2] += self.shifts[:, 1] * unit
         merged[:, 2] += self.differences[:, 2] * unit
         return np.concatenate([of_vertices, merged])
+
+    @property
+    def kept_places(self) -> NDArray[np.int64] | None:
+        """X and Y of the vertices as stored, ``(n_vertices, 2)``; None where they are not kept."""
+        kept = [column.values for column in self.corrections or () if hasattr(column, "values")]
+        if len(kept) < 2 or len({len(values) for values in kept[:2]}) > 1:
+            return None
+        return np.column_stack(kept[:2]).astype(np.int64)
 
     def kept_mesh(
         self, frame: LocalFrame, faces: NDArray[np.int32] | None = None
@@ -533,6 +541,7 @@ def cloud_mesh(
     gaps = gaps_of(vertices[:, :2], faces)
     origin = replace(origin, spacing=gaps.spacing)
     faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
+    faces = canonical_faces(faces)  # an order that need not be stored
     _tell_of_merging(name, origin)
     return TriangleMesh(vertices, faces, attributes, names), origin
 

@@ -96,17 +96,12 @@ def write_arrays(
         )
         connection.executemany(
             "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES (?,?,?)",
-            (
-                (cursor.lastrowid, sequence, chunk)
-                for sequence, chunk in enumerate(chunks)
-            ),
+            ((cursor.lastrowid, sequence, chunk) for sequence, chunk in enumerate(chunks)),
         )
         yield array.nbytes
 
 
-def _smallest(
-    array: NDArray[Any], pool: ThreadPoolExecutor
-) -> tuple[ArrayHeader, Iterable[bytes]]:
+def _smallest(array: NDArray[Any], pool: ThreadPoolExecutor) -> tuple[ArrayHeader, Iterable[bytes]]:
     """Return the header of an array and its chunks, never smaller than a reader believes."""
     header = closest_header(array)
     chunks = encode_array(array, pool, header)

@@ -237,8 +237,6 @@ def _neighbours(
     rows, columns = cells.rows + offset[0], cells.columns + offset[1]
     row_in = (rows >= 0) & (rows < grid.shape[0])
     column_in = (columns >= 0) & (columns < grid.shape[1])
-    window = np.ix_(
-        np.clip(rows, 0, grid.shape[0] - 1), np.clip(columns, 0, grid.shape[1] - 1)
-    )
+    window = np.ix_(np.clip(rows, 0, grid.shape[0] - 1), np.clip(columns, 0, grid.shape[1] - 1))
     is_known = known[window] & row_in[:, None] & column_in[None, :]
     return grid[window].astype(np.float64), is_known

@@ -79,7 +79,13 @@ from wavelet_gis.io.pyramid.grid_codec import (
     integers_of,
     values_of,
 )
-from wavelet_gis.io.pyramid.record_parts import n_parts, record_from_parts, record_to_parts
+from wavelet_gis.io.pyramid.record_parts import (
+    faces_from_parts,
+    faces_to_parts,
+    n_parts,
+    record_from_parts,
+    record_to_parts,
+)
 from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.dem import cell_plan
 from wavelet_gis.model.exact_restore import CORRECTIONS, number_dtype
@@ -333,8 +339,10 @@ def _to_parts(
     else:
         told, record_arrays = record_to_parts(record)
         arrays.update(record_arrays)
-        if geo.origin.grid is None:
-            arrays["faces"] = pyramid.faces
+        if geo.origin.points is not None:
+            of_faces, face_arrays = faces_to_parts(geo.origin.points.kept_places, pyramid.faces)
+            told.update(of_faces)
+            arrays.update(face_arrays)
     if pyramid.locked is not None:
         arrays["locked"] = pyramid.locked
     metadata: dict[str, Any] = {
@@ -502,17 +510,17 @@ def _recorded(
     """Return a pyramid from its record and the input."""
     described = contents.metadata.fields("pyramid")
     faces = None
-    if origin.grid is None:
-        faces = arrays.get("faces", "<i4", 2)
-        if faces.shape[1] != 3:
-            raise PyramidError(f"faces of shape {faces.shape}; the file is damaged.")
+    if written is not None:
+        faces = written.faces
+        arrays.all_named("faces")  # verified
+    elif origin.points is not None:
+        told, places = contents.metadata.fields("record"), origin.points.kept_places
+        faces = faces_from_parts(told, arrays, places)
     mesh = origin.kept_mesh(frame, faces)
     if mesh is None:
         raise PyramidError("the pyramid is told by an input that the file does not hold.")
     design = _design_from(described, len(described.texts("channels")))
-    record = record_from_parts(
-        contents.metadata.fields("record"), arrays, len(design["channels"])
-    )
+    record = record_from_parts(contents.metadata.fields("record"), arrays, len(design["channels"]))
     n_steps = sum(len(part.answers.levels) for part in record.parts)
     if n_steps != described.integer("n_levels"):
         raise PyramidError(f"{n_steps} steps for another number of levels; the file is damaged.")
@@ -543,8 +551,12 @@ def _design_from(described: Fields, n_channels: int) -> dict[str, Any]:
     tolerance = parameters.number("outline_tolerance")
     if tolerance < 0 or any(weight < 0 for weight in weights):
         raise parameters.fault("a weight or a tolerance below 0")
+    described.choice("signal", ("z",))
+    channels = tuple(described.texts("channels"))
+    if channels[:1] != ("z",) or len(set(channels)) != len(channels):
+        raise described.fault("channels of no pyramid")
     return {
-        "channels": tuple(described.texts("channels")),
+        "channels": channels,
         "update": described.choice("update", ("minimum_norm", "none")),
         "parameters": dict(parameters),
     }
@@ -603,9 +615,7 @@ def _part_from(contents: _Contents, arrays: StoredArrays, index: int) -> GeoPyra
     origin = origin_from_parts(fields, _source_arrays(fields, arrays, with_numbers=False))
     frame = LocalFrame.from_dict(metadata.fields("frame"))
     design = _design_from(described, len(described.texts("channels")))
-    record = record_from_parts(
-        metadata.fields("record"), arrays, len(design["channels"]), index
-    )
+    record = record_from_parts(metadata.fields("record"), arrays, len(design["channels"]), index)
     ids = record.parts[index].ids
     grid = origin.grid
     if ids is None or grid is None or ids[-1] >= (origin.n_vertices or 0):

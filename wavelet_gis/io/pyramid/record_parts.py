@@ -2,7 +2,8 @@
 
 What `wavelet_core.lifting.recorded` tells of a pyramid goes into the arrays
 ``parts/K/going`` (bits), ``parts/K/targets`` (two to a byte) and, for every part but the first,
-``parts/K/ids``, ``faces``, ``heights``, ``integrals`` and ``unchanged``; see docs/format.md.
+``parts/K/ids``, ``faces``, ``heights``, ``integrals`` and ``unchanged``; the faces of points into
+``faces/answers``, ``far`` and ``holes``. See docs/format.md.
 """
 
 from __future__ import annotations
@@ -22,8 +23,21 @@ from wavelet_core.partition.recorded import (
     Answers,
 )
 from wavelet_gis._fields import Fields
+from wavelet_gis.io.pyramid.face_codec import (
+    N_EDGE_CLASSES,
+    FaceRecord,
+    decode_faces,
+    encode_faces,
+)
 
-__all__ = ["ArraySource", "n_parts", "record_from_parts", "record_to_parts"]
+__all__ = [
+    "ArraySource",
+    "faces_from_parts",
+    "faces_to_parts",
+    "n_parts",
+    "record_from_parts",
+    "record_to_parts",
+]
 
 #: Places of targets from here on are told in an array of their own.
 BEYOND = 15
@@ -80,6 +94,58 @@ def record_to_parts(record: Record) -> tuple[dict[str, Any], dict[str, NDArray[A
             }
         )
     return fields, arrays
+
+
+def faces_to_parts(
+    places: NDArray[np.int64] | None, faces: NDArray[np.integer]
+) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """Return fields and arrays that tell the faces of points; see `face_codec`.
+
+    Parameters
+    ----------
+    places : (n, 2) int64, or None
+        Of the points, as stored.
+    faces : (m, 3) integers
+    """
+    record = None if places is None else encode_faces(places, faces)
+    if record is None:
+        return {}, {"faces": faces}
+    arrays: dict[str, NDArray[Any]] = {
+        "faces/answers": np.packbits(np.concatenate(record.answers)),
+        "faces/far": record.far,
+        "faces/holes": record.holes,
+    }
+    return {"faces": [len(answers) for answers in record.answers]}, arrays
+
+
+def faces_from_parts(
+    fields: Fields, arrays: ArraySource, places: NDArray[np.int64] | None
+) -> NDArray[Any]:
+    """Return the faces that `faces_to_parts` told, ``(m, 3)``.
+
+    Raises
+    ------
+    PyramidError
+        When a part is missing or does not fit the rest.
+    """
+    if "faces" not in fields:
+        faces = arrays.get("faces", "<i4", 2)
+        if faces.shape[1] != 3:
+            raise PyramidError(f"faces of shape {faces.shape}; the file is damaged.")
+        return faces
+    counts = fields.integers("faces")
+    packed, far = arrays.get("faces/answers", "|u1", 1), arrays.get("faces/far", "<i4", 2)
+    is_sound = (
+        len(counts) == N_EDGE_CLASSES
+        and len(packed) == -(-sum(counts) // 8)
+        and far.shape[1] == 2
+        and places is not None
+    )
+    if not is_sound or places is None:
+        raise fields.fault("faces that do not fit the points")
+    bits = np.unpackbits(packed, count=sum(counts))
+    answers = tuple(np.split(bits, np.cumsum(counts)[:-1]))
+    return decode_faces(places, FaceRecord(answers, far, arrays.get("faces/holes", "<i8", 1)))
 
 
 def n_parts(fields: Fields) -> int:
