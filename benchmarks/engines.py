@@ -38,6 +38,8 @@ if name == "synthetic":
 else:
     import wavelet_gis as wg
     mesh = wg.open(name).mesh
+    if mesh.n_vertices > 1_100_000:
+        sys.exit(0)
 tolerance = 0.02 * float(np.ptp(mesh.vertices[:, 2]))
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 began = time.perf_counter()
@@ -71,12 +73,15 @@ def run(engine: str, name: str, n: int, design: str) -> dict:
         [sys.executable, "-W", "ignore", "-c", WORK, name, str(n), design],
         env=environment, capture_output=True, text=True, check=True,
     )  # fmt: skip
+    if not said.stdout:
+        return {}
     return {**json.loads(said.stdout), "whole": time.perf_counter() - began}
 
 
 def compare(name: str, n: int, label: str, design: str) -> None:
     """Print one row."""
-    run("compiled", name, n, design)  # into numba's cache
+    if not run("compiled", name, n, design):  # into numba's cache; nothing for a larger input
+        return
     ours, theirs = run("compiled", name, n, design), run("arrays", name, n, design)
     same = "same" if ours["digest"] == theirs["digest"] else "DIFFER"
     print(
@@ -99,15 +104,16 @@ def main() -> None:
         "| input | design | vertices | left | compiled, s | arrays, s | ratio | whole process, s "
         "| bytes a vertex | result |\n" + "| --- " * 10 + "|"
     )
-    for n in (100, 500, *((1000,) if arguments.large else ())):
+    for n in () if arguments.real else (100, 500, *((1000,) if arguments.large else ())):
         for label, design in {**DESIGNS, "denoise": "denoise"}.items():
             if n < 1000 or label in ("10 %", "tolerance", "GLMN"):
                 compare("synthetic", n, label, design)
     if arguments.real:
         folder = arguments.data
         for path in sorted([*folder.glob("dems/*.tif"), *folder.glob("clouds/*.la[sz]")]):
-            if path.stat().st_size < 4e6:
-                compare(str(path), 0, "10 %", DESIGNS["10 %"])
+            if path.stat().st_size < 5e6:
+                for label in ("10 %", "GLMN"):
+                    compare(str(path), 0, label, DESIGNS[label])
 
 
 if __name__ == "__main__":

@@ -23,7 +23,6 @@ from ..parameters.analysis_options import (
     weights_refusal,
 )
 from ..parameters.request import Request
-from ..ui import dependencies
 from ..ui.enums import (
     ANY_FIELD,
     LINES,
@@ -189,11 +188,6 @@ class AnalyseTin(AnalysisAlgorithm):
     def refusal(self, request: Request) -> str | None:
         """Refuse weights that are no numbers."""
         return weights_refusal(request)
-
-    def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
-        """Return what edges that are given need; without them SciPy triangulates."""
-        has_edges = request.has("BREAKLINES") or request.has("CLIP")
-        return (dependencies.PYTHONCDT,) if has_edges else ()
 
     def take_layers(self, request: Request) -> None:
         """Take the sources, in the thread that the layers live in."""

@@ -1715,7 +1715,7 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
-    <source>The Python package numba is missing: the work takes some ten times longer, with the same result. Install it {} and start QGIS again.</source>
+    <source>The Python package numba is missing: the work takes two to seven times as long, with the same result. Install it {} and start QGIS again.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

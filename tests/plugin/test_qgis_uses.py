@@ -452,20 +452,6 @@ def test_a_command_for_a_terminal_is_quoted(qgis, monkeypatch):
     assert '"laspy[lazrs]"' in dependencies.remedy([dependencies.LASPY])
 
 
-def test_a_cloud_needs_no_pythoncdt_and_breaklines_do(provider, tmp_path):
-    from qgis.core import QgsProcessingContext
-    from terrain_wavelets.plugin.parameters.request import Request
-    from terrain_wavelets.plugin.ui import dependencies
-
-    def needed(name, parameters):
-        algorithm = provider.algorithm(name)
-        return algorithm.packages(Request(algorithm, parameters, QgsProcessingContext()))
-
-    assert dependencies.PYTHONCDT not in needed("analysepointcloud", {"INPUT": "a.laz"})
-    assert needed("analysetin", {"INPUT": "a.gpkg"}) == ()
-    assert needed("analysetin", {"BREAKLINES": "b.gpkg"}) == (dependencies.PYTHONCDT,)
-
-
 def test_an_outline_that_may_move_lets_a_level_be_coarser(run, tmp_path):
     values = hills(40, 50).astype("float32")
     rows, columns = np.mgrid[:40, :50]
