@@ -133,8 +133,8 @@ def slow_without_numba() -> str | None:
     if not missing([NUMBA]):
         return None
     return tr(
-        "The Python package numba is missing: the work takes two to seven times as long, with the same "
-        "result. Install it {} and start QGIS again."
+        "The Python package numba is missing: the work takes two to seven times as long, with the "
+        "same result. Install it {} and start QGIS again."
     ).format(remedy([NUMBA]))
 
 
