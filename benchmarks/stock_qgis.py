@@ -377,7 +377,9 @@ def run(folder: Path, case: str, packages: str, cancel_at: float, n: int) -> dic
         str(cancel_at),
         str(n),
     ]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, env=environment, cwd=folder, capture_output=True, text=True, check=False
+    )
     for line in done.stdout.splitlines():
         if line.startswith("RESULT"):
             return json.loads(line.removeprefix("RESULT"))
