@@ -57,7 +57,8 @@ else:
 seconds = time.perf_counter() - began
 used = time.process_time() - busy
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(json.dumps({"n": mesh.n_vertices, "left": size, "seconds": seconds, "used": used, "digest": digest,
+print(json.dumps({"n": mesh.n_vertices, "left": size, "seconds": seconds,
+                  "used": used, "digest": digest,
                   "bytes": 1024 * (peak - before) / mesh.n_vertices}))
 """
 

@@ -208,12 +208,15 @@ class FilterLevels(PyramidAlgorithm):
             (
                 "SMALLEST_SIZE",
                 tr("Smallest size kept"),
-                tr("Drop details that are smaller on the ground, in metres."),
+                tr(
+                    "Drop details that are smaller on the ground, in the unit of x and y, or "
+                    "metres for a geographic CRS. The pyramid may be of any kind."
+                ),
             ),
             (
                 "LARGEST_SIZE",
                 tr("Largest size kept"),
-                tr("Drop details that are larger on the ground, in metres."),
+                tr("Drop details that are larger on the ground, in the same unit."),
             ),
         ):
             self.add(
@@ -259,7 +262,11 @@ class FilterLevels(PyramidAlgorithm):
         before = self.geo_pyramid(request)
         sigma = request.number("SIGMA_OF_NOISE")
         request.stage(tr("Filtering"))
-        gains, levels, metres = _gains(request), _levels(request, before), _sizes(request)
+        gains, levels = _gains(request), _levels(request, before)
+        sizes, metre = _sizes(request), before.system.horizontal_unit
+        if before.system.kind == "geographic":
+            metre = 1.0
+        metres = None if sizes is None else (sizes[0] * metre, sizes[1] * metre)
         drop_coarse, denoise = request.flag("DROP_COARSE"), request.flag("DENOISE")
         n_pyramids = request.whole("PYRAMIDS") or 0
         channels, noise_range = request.words("CHANNELS") or ["z"], _range(request)
@@ -347,7 +354,7 @@ def _levels(request: Request, geo: GeoPyramid) -> tuple[int, int] | None:
 
 
 def _sizes(request: Request) -> tuple[float, float] | None:
-    """Return the smallest and the largest size that is kept, in metres; None for all."""
+    """Return the smallest and the largest size that is kept; None for all."""
     smallest, largest = request.number("SMALLEST_SIZE"), request.number("LARGEST_SIZE")
     if smallest is None and largest is None:
         return None
