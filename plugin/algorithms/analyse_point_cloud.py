@@ -210,7 +210,7 @@ class AnalysePointCloud(AnalysisAlgorithm):
         max_edge = request.number("MAX_EDGE")
         request.stage(tr("Triangulating {} points").format(cloud.n_points))
         system, unit = coordinate_system(crs), vertical_unit(request) or place.vertical_unit
-        duplicates = request.text("DUPLICATES") or duplicate_rules()[0]
+        duplicates = request.text("DUPLICATES") or None
         concave = request.flag("CONCAVE")
 
         def triangulate(work: Work) -> Terrain:

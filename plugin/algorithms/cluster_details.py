@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import partial
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING
 
 from qgis.core import (
     QgsProcessingFeatureSource,
@@ -20,7 +20,7 @@ from qgis.core import (
 )
 
 from ..base import Values
-from ..parameters.choices import choice
+from ..parameters.choices import choice, clusterings
 from ..parameters.pyramid import crs_of
 from ..parameters.request import Request
 from ..ui import dependencies
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
     from ..qgis_io.patience import Work
 
-METHODS = ("kmeans", "mixture")
 TEACHERS = ("nobody: find clusters", "training areas", "classes of the LAS file")
 
 
@@ -104,7 +103,7 @@ class ClusterDetails(PyramidAlgorithm):
             tr("Empty for a number found from the data (2 to 10)."),
         )
         self.add(
-            choice("METHOD", tr("Method"), METHODS),
+            choice("METHOD", tr("Method"), clusterings()),
             tr("<i>kmeans</i>, or a <i>mixture</i> of Gaussians of different size and shape."),
             advanced=True,
         )
@@ -250,7 +249,7 @@ class ClusterDetails(PyramidAlgorithm):
 
         request.stage(tr("Gathering the spectrum of each vertex, and clustering"))
         count, seed = request.whole("COUNT"), request.whole("SEED") or 0
-        method = cast(Literal["kmeans", "mixture"], request.text("METHOD"))
+        method = request.text("METHOD")
         channels = request.words("CHANNELS")
 
         def compute(work: Work) -> Labelled:

@@ -504,6 +504,7 @@ def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
     import time
 
     from terrain_wavelets.plugin.qgis_io.patience import computed
+
     from wavelet_core.errors import Cancelled
 
     log, told = Log(), []
@@ -528,6 +529,7 @@ def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
 def test_what_is_computed_comes_back_with_its_warnings_notes_and_errors(qgis):
     from terrain_wavelets.plugin.qgis_io.patience import computed
     from terrain_wavelets.plugin.ui.warning_log import shown_in
+
     from wavelet_core.errors import MeshError
     from wavelet_gis.errors import TerrainWarning
     from wavelet_gis.notes import collected, warn
