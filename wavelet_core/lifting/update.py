@@ -21,8 +21,7 @@ def coarse_integrals(
     # one entry after the other, as `update_heights` adds them: the bits are the same
     added = prediction.data * np.repeat(odd_integrals, np.diff(prediction.indptr))
     places = np.concatenate([np.arange(len(even_integrals)), prediction.indices])
-    integrals = np.bincount(places, np.concatenate([even_integrals, added])).astype(np.float64)
-    return integrals
+    return np.bincount(places, np.concatenate([even_integrals, added])).astype(np.float64)
 
 
 class Support(NamedTuple):

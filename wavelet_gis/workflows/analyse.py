@@ -87,7 +87,7 @@ class Analysis:
         self,
         path: str | os.PathLike[str],
         *,
-        layers: Layers = "all",
+        layers: Layers = "auto",
         progress: Progress | None = None,
     ) -> None:
         """Write the pyramid file; see `wavelet_gis.workflows.save.save`."""
