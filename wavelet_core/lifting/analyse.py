@@ -15,6 +15,7 @@ from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
+from ..partition._mutable_level import LevelFigures
 from ..partition.error_guided import DEFAULT_LEVELS, SurfaceRules, analyse_surface
 from ..partition.orderings import LevelView, Partition
 from ..partition.registry import PARTITIONS, PartitionInput
@@ -187,6 +188,7 @@ class _Analysis:
         self._horizontal = mesh.vertices[:, :2] if self._in_plan else None
         self._locked = locked
         self._integrals = np.ones(mesh.n_vertices)
+        self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
 
     def run(self) -> Pyramid:
@@ -207,6 +209,7 @@ class _Analysis:
             update=self._options.update,
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
+            measured=self._figures,
         )
         record = stop_record(
             self._stopped_by,
@@ -262,7 +265,21 @@ class _Analysis:
         )
         self._coefficients = result.coarse
         self._stopped_by = result.stopped_by
+        self._figures = self._in_input_units(result.figures)
         return [Step(*step) for step in result.steps]
+
+    def _in_input_units(self, figures: list[LevelFigures]) -> tuple[LevelFigures, ...] | None:
+        """Return the figures of the levels, the coarsest first; None where they are not those.
+
+        With a tolerance of the outline, input vertices that no face covers count in the analysis.
+        """
+        if self._options.outline_tolerance:
+            return None
+        squares = self._scale.height_weights() ** 2
+        return tuple(
+            level._replace(squared_changes=level.squared_changes / squares)
+            for level in reversed(figures)
+        )
 
     def _make_partition(self) -> Partition:
         columns = np.hstack([self._mesh.vertices[:, 2:], self._mesh.attributes])

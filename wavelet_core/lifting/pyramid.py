@@ -14,6 +14,7 @@ from .._validate import FloatArray, IntArray, are_equal, counted, frozen, owned
 from ..errors import OptionError, PyramidError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
+from ..partition._mutable_level import LevelFigures
 from ..partition.stopping import StopRecord
 from ..progress import Progress
 from ._checks import check_parts
@@ -96,6 +97,8 @@ class Pyramid:
         Why the analysis ended; None for a pyramid that comes from elsewhere.
     part : PyramidPart or None
         Where its finest level is not the input but a level of a larger pyramid.
+    measured : tuple of LevelFigures or None
+        Sizes and errors of every level, the coarsest first, where the analysis has measured them.
 
     Examples
     --------
@@ -118,6 +121,7 @@ class Pyramid:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     stop: StopRecord | None = field(default=None, compare=False)
     part: PyramidPart | None = field(default=None, compare=False)
+    measured: tuple[LevelFigures, ...] | None = field(default=None, compare=False)
 
     @classmethod
     def from_parts(
@@ -389,7 +393,7 @@ class Pyramid:
 
     def with_parts(self, **changes: Any) -> Pyramid:
         """Return a pyramid of the same topology with other coarse coefficients or steps."""
-        return replace(self, **changes)
+        return replace(self, **{"measured": None, **changes})
 
     # -- walks through the levels ----------------------------------------------------------------
 

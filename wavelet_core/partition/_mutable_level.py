@@ -77,6 +77,25 @@ class CollapseStep(NamedTuple):
     details: FloatArray
 
 
+class LevelFigures(NamedTuple):
+    """Sizes and errors of a level.
+
+    n_vertices, n_faces : int
+    n_lone : int, vertices without a face, which no surface covers
+    squared_errors : float, sum of the squared height errors of all input vertices
+    largest_error : float, the largest of them
+    squared_changes : (c,) float64, of each weighted column the sum of the squared differences of
+        the level's vertices from the input
+    """
+
+    n_vertices: int
+    n_faces: int
+    n_lone: int
+    squared_errors: float
+    largest_error: float
+    squared_changes: FloatArray
+
+
 class SurfaceLevel:
     """The present level; its vertices and faces live in arrays with gaps.
 
@@ -176,6 +195,19 @@ class SurfaceLevel:
     def costs(self, slots: NDArray[np.int32]) -> FloatArray:
         """Return the costs of vertices, as last ranked."""
         return self._vertices.cost[slots]
+
+    def figures(self) -> LevelFigures:
+        """Return sizes and errors of the level as it is now."""
+        lives = self._vertices.lives
+        changes = self._surface.z[lives] - self._surface.measured[lives]
+        return LevelFigures(
+            self.n_vertices,
+            int(np.count_nonzero(self._faces.lives)),
+            int(np.count_nonzero(lives & (self._mesh.outgoing < 0))),
+            self.squared_errors(),
+            self.largest_error(),
+            (changes**2).sum(axis=0),
+        )
 
     def squared_errors(self) -> float:
         """Return the sum of the squared height errors of all input vertices."""
