@@ -37,6 +37,7 @@ ROOMS = {
         "errors",
         "_fields",
         "_program",
+        "_memory",
         "progress",
         "notes",
         "crs",

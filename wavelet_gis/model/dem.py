@@ -235,12 +235,24 @@ class RasterOrigin:
     def kept_mesh(
         self, frame: LocalFrame, faces: NDArray[np.int32] | None = None
     ) -> TriangleMesh | None:
-        """Return the mesh that was analysed, to the bit; None where it is not kept."""
+        """Return the mesh that was analysed, to the bit; None where it is not kept.
+
+        Parameters
+        ----------
+        frame : LocalFrame
+        faces : (n_faces, 3) int32, optional
+            Instead of those of the grid.
+        """
         if not isinstance(self.corrections, KeptColumn):
             return None
-        if len(self.corrections.values) != self.n_vertices:
+        n_vertices = self.n_vertices
+        if len(self.corrections.values) != n_vertices:
             raise PyramidError("the raster has other cells than numbers; analyse the input anew.")
-        return dem_mesh(self._dem(self.corrections.values), frame)
+        dem = self._dem(self.corrections.values)
+        if faces is None:
+            return dem_mesh(dem, frame)
+        plan = cell_plan(self.geometry, self.valid, frame, np.arange(n_vertices))
+        return TriangleMesh(np.column_stack([plan, frame.local_z(dem.elevations())]), faces)
 
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> Dem:
         """Return the DEM of the finest mesh of a pyramid.

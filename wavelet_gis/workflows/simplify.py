@@ -11,6 +11,7 @@ from wavelet_core import analyse as core_analyse
 from wavelet_core.accuracy.fitted_heights import fitted
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import cover_of
+from wavelet_gis._memory import require_memory
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected
 from wavelet_gis.progress import Clock, part_of
@@ -118,12 +119,15 @@ def simplify(
 
     Raises
     ------
+    InputFileError
+        There is less memory than the analysis takes.
     OptionError
         Not just one of the three rules, or options that contradict each other.
     Cancelled
         ``progress`` returned False.
     """
     require_terrain(terrain)
+    require_memory(terrain.mesh.n_vertices, 1 + terrain.mesh.attributes.shape[1])
     if sum(rule is not None for rule in (vertices, max_error, max_rms)) != 1:
         raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
     clock = Clock(on_stage)
@@ -138,7 +142,8 @@ def simplify(
             **core_options(options),
         )
         note_unreached_size(pyramid, vertices)
-        note_moved_outline(terrain.mesh, pyramid.mesh(0), options.get("outline_tolerance"))
+        if options.get("outline_tolerance"):
+            note_moved_outline(terrain.mesh, pyramid.mesh(0), options["outline_tolerance"])
     clock.stage("fit")
     mesh = pyramid.mesh(0)
     # Fitting moves no vertex sideways, so the points are located once for both.

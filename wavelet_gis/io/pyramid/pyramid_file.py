@@ -74,6 +74,7 @@ from wavelet_gis.io.pyramid.array_tables import (
 )
 from wavelet_gis.io.pyramid.grid_codec import (
     DIVISORS,
+    Residuals,
     decode_grid,
     encode_grid,
     integers_of,
@@ -97,6 +98,7 @@ from wavelet_gis.progress import part_of
 __all__ = [
     "FORMATS_READ",
     "FORMAT_VERSION",
+    "read_input",
     "read_levels",
     "read_pyramid",
     "read_summary",
@@ -179,6 +181,7 @@ _SMALL_BYTES = 4 << 20
 #: A raster's numbers, in memory and in the file.
 _GRID_VALUES = f"source/{CORRECTIONS}/values"
 _RESIDUALS = "source/residuals"
+_BEYOND = "source/beyond"
 
 _CANCELLED = "writing the pyramid was cancelled; nothing was kept."
 
@@ -253,6 +256,51 @@ def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
         contents = _Contents(connection)
         arrays = StoredArrays(connection, pool, contents.entries, os.path.getsize(path))
         return _from_parts(contents, arrays)
+
+
+def read_input(path: str | os.PathLike[str]) -> GeoPyramid:
+    """Return what the input comes back from, without the levels where the file allows it.
+
+    Parameters
+    ----------
+    path : path
+        A GeoPackage of any origin.
+
+    Returns
+    -------
+    GeoPyramid
+        Of a file that keeps the input's numbers, its pyramid is the finest level alone, and has no
+        faces; of any other file, the whole pyramid.
+
+    Raises
+    ------
+    InputFileError, PyramidError
+        As `read_pyramid`.
+    """
+    with open_untrusted(path) as connection, _pool() as pool, _naming(path):
+        contents = _Contents(connection)
+        arrays = StoredArrays(connection, pool, contents.entries, os.path.getsize(path))
+        if "record" not in contents.metadata:
+            return _from_parts(contents, arrays)
+        fields = contents.metadata.fields("source")
+        _check_source(fields)
+        origin = origin_from_parts(fields, _source_arrays(fields, arrays))
+        frame = LocalFrame.from_dict(contents.metadata.fields("frame"))
+        mesh = origin.kept_mesh(frame, np.empty((0, 3), dtype=np.int32))
+        if mesh is None:
+            raise PyramidError("the pyramid is told by an input that the file does not hold.")
+        described = contents.metadata.fields("pyramid")
+        pyramid = Pyramid.from_parts(
+            faces=mesh.faces,
+            horizontal=mesh.vertices[:, :2],
+            coarse=np.hstack([mesh.vertices[:, 2:], mesh.attributes]),
+            steps=(),
+            channels=("z", *mesh.attribute_names),
+            signal="z",
+            update=described.text("update"),
+            parameters=dict(described.fields("parameters")),
+        )
+        return _geo_pyramid(contents, pyramid, origin, frame)
 
 
 def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -395,8 +443,10 @@ def _shrink_source(
     grid = geo.origin.grid
     if grid is not None and _GRID_VALUES in arrays:
         numbers = integers_of(arrays.pop(_GRID_VALUES))
-        arrays[_RESIDUALS] = encode_grid(numbers.integers, grid.valid)
+        residuals = encode_grid(numbers.integers, grid.valid)
+        arrays[_RESIDUALS], arrays[_BEYOND] = residuals.numbers, residuals.beyond
         source["divisor"] = numbers.divisor
+        source["relief_classes"] = list(residuals.classes)
 
 
 def _source_arrays(
@@ -407,7 +457,11 @@ def _source_arrays(
         return arrays.all_named("source/")
     found = {name: arrays.get(name) for name in ("source/valid", "source/holes")}
     if with_numbers:
-        residuals = arrays.get(_RESIDUALS, n_dimensions=1)
+        residuals = Residuals(
+            arrays.get(_RESIDUALS, n_dimensions=1),
+            arrays.get(_BEYOND, "<u8", 1),
+            tuple(source.integers("relief_classes")),
+        )
         n_rows, n_columns = source.integers("shape", 1)
         packed = arrays.get("source/valid", "|u1", 1)
         if len(packed) != -(-n_rows * n_columns // 8):
