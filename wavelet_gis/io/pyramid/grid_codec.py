@@ -165,8 +165,8 @@ def encode_grid(integers: NDArray[np.int64], valid: NDArray[np.bool_]) -> Residu
 def _as_bytes(residuals: NDArray[np.uint64], classes: tuple[int, ...]) -> Residuals:
     is_beyond = residuals >= ESCAPE
     if np.count_nonzero(is_beyond) > MOST_BEYOND * len(residuals):
-        largest = int(residuals.max(initial=0))
-        numbers = residuals.astype(np.min_scalar_type(largest))
+        widest = np.promote_types(np.uint16, np.min_scalar_type(int(residuals.max(initial=0))))
+        numbers = residuals.astype(widest)  # no bytes, in which ESCAPE would be one of them
         return Residuals(numbers, np.empty(0, dtype=np.uint64), classes)
     numbers = np.minimum(residuals, ESCAPE).astype(np.uint8)
     return Residuals(numbers, residuals[is_beyond], classes)
