@@ -63,9 +63,7 @@ docs: $(BIN)/.installed-docs
 	@echo docs/_build/html/index.html
 
 plugin:
-	@mkdir -p dist
-	git archive --format=zip --prefix=terrain_wavelets/ --output=dist/terrain_wavelets.zip HEAD
-	@echo dist/terrain_wavelets.zip
+	@$(PYTHON) scripts/plugin_zip.py
 
 clean:
 	rm -rf build dist demo_output docs/_build docs/made docs/_static/levels.html *.egg-info .pytest_cache .hypothesis .ruff_cache .mypy_cache
