@@ -44,8 +44,8 @@ ATTRIBUTES = ("classification", "hag", "intensity", "rgb", "return_number", "num
 class CloudInput(TerrainWaveletsAlgorithm):
     """Base of the algorithms that start from a LAS, LAZ or COPC file."""
 
-    #: The classes that are taken where none are named and the file has them; empty for all points.
-    CLASSES_FIRST: ClassVar[tuple[int, ...]] = ()
+    #: Whether the points of the ground alone are taken where no classes are named and it has some.
+    TAKES_GROUND: ClassVar[bool] = False
 
     def add_cloud_parameters(self) -> None:
         """Declare INPUT and what is taken of it."""
@@ -55,7 +55,7 @@ class CloudInput(TerrainWaveletsAlgorithm):
                 tr("Point cloud file"),
                 fileFilter=tr("LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)"),
             ),
-            tr("Read with the Python package laspy, so no point cloud support in QGIS is needed."),
+            tr("Read by the plugin itself, so no point cloud support in QGIS is needed."),
         )
         self.add(
             QgsProcessingParameterEnum(
@@ -81,6 +81,12 @@ class CloudInput(TerrainWaveletsAlgorithm):
         self.add(
             QgsProcessingParameterString("CLASSES", tr("Classes"), optional=True),
             tr(
+                "Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 "
+                "for ground and water. Empty for those of the ground, if the file tells them, else "
+                "for all."
+            )
+            if self.TAKES_GROUND
+            else tr(
                 "Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 "
                 "for ground and water. Empty for all points."
             ),
@@ -151,6 +157,9 @@ class CloudInput(TerrainWaveletsAlgorithm):
         """Return what reading the file needs; without PythonCDT, SciPy triangulates."""
         return dependencies.for_las(request.input_file("INPUT"))
 
+    def take_layers(self, request: Request) -> None:
+        """Take nothing: a file lives in no thread."""
+
     def terrain(self, request: Request) -> Terrain:
         """Return the terrain in the file."""
         from wavelet_gis.io.las import read_cloud
@@ -162,6 +171,7 @@ class CloudInput(TerrainWaveletsAlgorithm):
         request.stage(tr("Reading the points"))
         attributes = [*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")]
         classes, carry = request.whole_numbers("CLASSES") or None, request.flag("CARRY")
+        takes_ground = self.TAKES_GROUND and classes is None
         keep_noise, keep_withheld = request.flag("KEEP_NOISE"), request.flag("KEEP_WITHHELD")
 
         def read(work: Work) -> tuple[PointCloud, Georeference]:
@@ -169,12 +179,21 @@ class CloudInput(TerrainWaveletsAlgorithm):
                 path,
                 attributes=attributes,
                 classes=classes,
+                ground_first=takes_ground,
                 carry=carry,
                 keep_noise=keep_noise,
                 keep_withheld=keep_withheld,
             )
 
         cloud, place = request.computed(read, 0.0, 0.05)
+        if takes_ground:
+            request.say(
+                tr("Taken: the {} points of the ground (class 2), of {}").format(
+                    cloud.n_points, cloud.n_in_file
+                )
+                if cloud.classes
+                else tr("Taken: all points, since none is classified as ground (class 2)")
+            )
         crs = request.crs("CRS")
         if not crs.isValid() and place.wkt:
             crs = QgsCoordinateReferenceSystem.fromWkt(place.wkt)

@@ -3,6 +3,8 @@
 import pytest
 
 IDS = {
+    "simplifypointcloud",
+    "thinpointcloud",
     "analysedem",
     "analysepointcloud",
     "analysetin",
