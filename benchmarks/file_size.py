@@ -100,6 +100,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, default=ROOT.parent / "shared" / "data")
     parser.add_argument("--most", type=int, default=3_000_000, help="skip larger ones")
+    parser.add_argument("--only", nargs="*", help="names of files, instead of all")
     parser.add_argument("--write", type=Path, help="a page with the comments around the table")
     arguments = parser.parse_args()
     warnings.simplefilter("ignore")
@@ -111,6 +112,8 @@ def main() -> None:
     ]
     print("\n".join(lines))
     for path in paths:
+        if arguments.only and path.name not in arguments.only:
+            continue
         row = row_of(path, arguments.most)
         if row is not None:
             lines.append(row)

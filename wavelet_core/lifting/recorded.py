@@ -33,8 +33,8 @@ __all__ = ["Frame", "Record", "RecordPart", "part_of", "pyramid_of", "record_of"
 #: A part begins at the first level with no more than this share of the vertices that the part
 #: before begins with: it takes some 130 bits a vertex of its own, so one or two for each of all.
 PART_SHARE = 1 / 64
-#: Pyramids of fewer vertices are in one part: they are read in a second.
-LEAST_IN_PARTS = 500_000
+#: Pyramids of fewer vertices are in one part: they are read in a few seconds.
+LEAST_IN_PARTS = 3_000_000
 #: No part begins with fewer.
 LEAST_IN_PART = 1000
 
