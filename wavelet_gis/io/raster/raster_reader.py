@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +12,7 @@ from numpy.typing import NDArray
 
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.errors import InputFileError, RasterWarning
+from wavelet_gis.io.libraries import silent_libraries
 from wavelet_gis.io.names import file_of, gdal_path
 from wavelet_gis.io.raster.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
 from wavelet_gis.io.raster.nodata import doubtful_value, impossible_values
@@ -24,7 +23,7 @@ from wavelet_gis.notes import warn
 if TYPE_CHECKING:
     from rasterio.io import DatasetReader
 
-__all__ = ["NO_TAG", "read_dem", "silent_libraries"]
+__all__ = ["NO_TAG", "read_dem"]
 
 #: Given for a nodata value, it says that there is none.
 NO_TAG = "none"
@@ -100,7 +99,7 @@ def read_dem(
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(gdal_path(path)) as dataset:
                 dem, place = _read_band(dataset, path, band, nodata)
-    except (RasterioError, CPLE_BaseError) as error:
+    except (RasterioError, CPLE_BaseError, UnicodeDecodeError) as error:
         if remote is not None:
             raise InputFileError(
                 f"{path}: {remote}, which this raster reads over the network, cannot be had; fetch "
@@ -110,23 +109,6 @@ def read_dem(
     require_sound(dem, os.fspath(path))
     _tell_of_doubts(dem, path)
     return dem, place
-
-
-@contextmanager
-def silent_libraries() -> Iterator[None]:
-    """Keep what libtiff prints on its own off standard error; the error itself comes to us."""
-    try:
-        kept = os.dup(2)
-    except OSError:  # standard error is closed
-        yield
-        return
-    with open(os.devnull, "wb") as nowhere:
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 def _require_file(path: str | os.PathLike[str]) -> None:
@@ -293,6 +275,8 @@ def _reason(error: Exception, path: str | os.PathLike[str]) -> str:
             "this is a text file of points, not a raster that GDAL can open; make a LAS file of "
             "it (pdal translate a.xyz a.las), or a grid (gdal_grid)."
         )
+    if isinstance(error, UnicodeDecodeError):  # GDAL's complaint quotes what is no text
+        return "this is no raster that GDAL can open; check the file and its suffix."
     cause = error.__cause__ or error
     text = str(cause).splitlines()[0] if str(cause) else type(cause).__name__
     if "not recognized" in text:
