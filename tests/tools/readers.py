@@ -32,13 +32,13 @@ class Kind(NamedTuple):
     read : returns what a file holds, taken through the package
     is_wrong : tells from what was read, what the sound file held, the path and whether all damage
         lies in the head, whether something else came back than the file holds
-    warned_is_told : whether a warning makes a wrong result a told one
+    telling : what a warning must hold to make a wrong result a told one; None where none does
     """
 
     bases: Callable[[Path], list[Base]]
     read: Callable[[Path], Any]
     is_wrong: Callable[[Any, Any, Path, bool], bool]
-    warned_is_told: bool = False
+    telling: str | None = None
 
 
 # -- point clouds
@@ -269,7 +269,7 @@ def _numbers(path: Path) -> Iterator[list[float]]:
 
 
 KINDS = {
-    "las": Kind(las_bases, read_las, cloud_is_wrong, warned_is_told=True),
-    "tif": Kind(tif_bases, read_tif, raster_is_wrong),
+    "las": Kind(las_bases, read_las, cloud_is_wrong, telling=""),
+    "tif": Kind(tif_bases, read_tif, raster_is_wrong, telling="not without complaint"),
     "mesh": Kind(mesh_bases, read_mesh, mesh_is_wrong),
 }

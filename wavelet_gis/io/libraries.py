@@ -1,37 +1,64 @@
-"""What libraries print on standard error by themselves, heard instead of shown."""
+"""What libraries print or log by themselves, heard instead of shown."""
 
 from __future__ import annotations
 
+import logging
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 __all__ = ["silent_libraries"]
 
+#: How GDAL's log lines begin: the class of the error, and where it was.
+_CLASS = re.compile(r"^CPLE_\w+(?: in )?:?\s*")
+
 #: So much of what was said is kept.
 _MOST_HEARD = 65_536
 
 
+class _Listener(logging.Handler):
+    """Keeps the warnings that rasterio logs of what GDAL says."""
+
+    def __init__(self, lines: list[str]) -> None:
+        super().__init__(logging.WARNING)
+        self._lines = lines
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._lines.append(_CLASS.sub("", " ".join(record.getMessage().split())))
+
+
 @contextmanager
 def silent_libraries() -> Iterator[list[str]]:
-    """Keep what GDAL and libtiff print off standard error, their errors come to us anyway.
+    """Keep what GDAL and libtiff print off standard error; their errors come to us anyway.
 
     Yields
     ------
     list of str
-        Empty; holds the lines that were printed when the block has ended.
+        Empty; when the block has ended, the lines that were printed, or logged as warnings.
     """
     lines: list[str] = []
+    listener, logger = _Listener(lines), logging.getLogger("rasterio")
+    logger.addHandler(listener)
+    try:
+        with _printed(lines):
+            yield lines
+    finally:
+        logger.removeHandler(listener)
+
+
+@contextmanager
+def _printed(lines: list[str]) -> Iterator[None]:
     try:
         kept = os.dup(2)
     except OSError:  # standard error is closed
-        yield lines
+        yield
         return
     with tempfile.TemporaryFile() as heard:
         os.dup2(heard.fileno(), 2)
         try:
-            yield lines
+            yield
         finally:
             os.dup2(kept, 2)
             os.close(kept)

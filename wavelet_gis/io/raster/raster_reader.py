@@ -63,7 +63,7 @@ def read_dem(
     -----
     RasterWarning
         When numbers that can be no elevations are taken as nodata, when others may be meant as
-        nodata, and when data come over the network.
+        nodata, when data come over the network, and when GDAL complains of the file.
 
     Notes
     -----
@@ -95,7 +95,7 @@ def read_dem(
     try:
         # A raster without georeference is told of by our own warning, once.
         settings = NO_NETWORK if offline else {}
-        with warnings.catch_warnings(), silent_libraries(), rasterio.Env(**settings):
+        with warnings.catch_warnings(), silent_libraries() as said, rasterio.Env(**settings):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(gdal_path(path)) as dataset:
                 dem, place = _read_band(dataset, path, band, nodata)
@@ -107,6 +107,13 @@ def read_dem(
             ) from error
         raise InputFileError(f"{path}: {_reason(error, path)}") from error
     require_sound(dem, os.fspath(path))
+    if said:
+        _warn(
+            "raster_read_with_complaints",
+            "{path}: read, but not without complaint, and cells may be wrong: {complaint}",
+            path=os.fspath(path),
+            complaint=said[0],
+        )
     _tell_of_doubts(dem, path)
     return dem, place
 
