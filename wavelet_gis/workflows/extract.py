@@ -16,7 +16,6 @@ from wavelet_core.mesh.location import Cover, surface_errors
 from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
 from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.products.lone_vertices import lone_vertices
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
 
@@ -128,7 +127,6 @@ def measured(
     points: NDArray[np.float64],
     z_scale: float,
     cover: Cover | None = None,
-    vertex_ids: NDArray[np.int64] | None = None,
 ) -> SurfaceErrors:
     """Return the vertical errors of a surface.
 
@@ -142,14 +140,8 @@ def measured(
         Working units in one of the input's unit of z.
     cover : Cover, optional
         Of the points on the mesh, where it is known already.
-    vertex_ids : (n_vertices,) int64, optional
-        Which of the points the vertices are: one without a triangle is kept, and its height with
-        it.
     """
     errors = surface_errors(mesh, points, cover) / z_scale
-    if vertex_ids is not None:
-        lone = lone_vertices(mesh)
-        errors[vertex_ids[lone]] = (mesh.vertices[lone, 2] - points[vertex_ids[lone], 2]) / z_scale
     covered = errors[np.isfinite(errors)]
     return SurfaceErrors(
         float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,

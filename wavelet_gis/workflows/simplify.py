@@ -150,7 +150,7 @@ def simplify(
     # Of a cloud these are all points of the surface: those merged with a vertex count too.
     points = terrain.points_for_errors()
     known = cover if len(points) == terrain.mesh.n_vertices else None
-    errors = measured(mesh, points, terrain.frame.z_scale, known, pyramid.vertex_ids(0))
+    errors = measured(mesh, points, terrain.frame.z_scale, known)
     noted = terrain.with_notes([*terrain.notes, *notes])
     return Simplified(
         geo=noted.uncorrected(pyramid),
