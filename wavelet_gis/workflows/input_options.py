@@ -24,6 +24,7 @@ _MEANT_FOR = {
     "attributes": (CLOUD, POINTS, TABLE),
     "classes": (CLOUD,),
     "class_channels": (CLOUD,),
+    "carry": (CLOUD,),
     "keep_noise": (CLOUD,),
     "keep_withheld": (CLOUD,),
     "duplicates": (CLOUD,),
@@ -32,8 +33,9 @@ _MEANT_FOR = {
     "layer": (POINTS, TRIANGLES),
     "z_field": (POINTS,),
 }
-#: What an option is when nobody has given it; None or False where it is not named here.
-_DEFAULTS = {"duplicates": "lowest", "attributes": ()}
+#: What an option is when nobody has given it; None or False where it is not
+#: named here.
+_DEFAULTS = {"duplicates": "lowest", "attributes": (), "carry": True}
 
 
 def require_meaning(path: object, kind: str, options: Mapping[str, Any]) -> None:
@@ -73,7 +75,7 @@ def require_meaning(path: object, kind: str, options: Mapping[str, Any]) -> None
 
 
 def _is_given(name: str, value: Any) -> bool:
-    if value is None or value is False:
+    if value is None or (value is False and name != "carry"):
         return False
     if name == "attributes":
         return len(value) > 0

@@ -136,6 +136,7 @@ def open_terrain(
             "attributes": attributes,
             "classes": classes,
             "class_channels": class_channels,
+            "carry": carry,
             "keep_noise": keep_noise,
             "keep_withheld": keep_withheld,
             "duplicates": duplicates,

@@ -22,6 +22,7 @@ from wavelet_gis.workflows.options import (
     note_moved_outline,
     note_unreached_size,
     require_terrain,
+    warn_of_error_above,
     working_rules,
 )
 
@@ -151,6 +152,9 @@ def simplify(
     points = terrain.points_for_errors()
     known = cover if len(points) == terrain.mesh.n_vertices else None
     errors = measured(mesh, points, terrain.frame.z_scale, known)
+    warn_of_error_above(
+        terrain.name, errors.max_error, errors.rmse, max_error=max_error, max_rms=max_rms
+    )
     noted = terrain.with_notes([*terrain.notes, *notes])
     return Simplified(
         geo=noted.uncorrected(pyramid),

@@ -15,7 +15,7 @@ from wavelet_gis.errors import InputFileError, RasterWarning
 from wavelet_gis.io.libraries import silent_libraries
 from wavelet_gis.io.names import file_of, gdal_path
 from wavelet_gis.io.raster.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
-from wavelet_gis.io.raster.nodata import doubtful_value, impossible_values
+from wavelet_gis.io.raster.nodata import NO_TAG, tell_of_doubts, told_holes
 from wavelet_gis.io.raster.remote import NO_NETWORK, remote_reference
 from wavelet_gis.model.dem import Dem, GridGeometry, require_sound
 from wavelet_gis.notes import warn
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from rasterio.io import DatasetReader
 
 __all__ = ["NO_TAG", "read_dem"]
-
-#: Given for a nodata value, it says that there is none.
-NO_TAG = "none"
 
 #: Creation options of GeoTIFF that are taken over from the file that was read.
 _GTIFF_OPTIONS = ("compress", "predictor", "tiled", "blockxsize", "blockysize")
@@ -114,7 +111,7 @@ def read_dem(
             path=os.fspath(path),
             complaint=said[0],
         )
-    _tell_of_doubts(dem, path)
+    tell_of_doubts(dem.values[dem.valid], os.fspath(path))
     return dem, place
 
 
@@ -199,20 +196,7 @@ def _valid_cells(
     if values.dtype.kind == "f":
         valid &= np.isfinite(values)
     if nodata is None:
-        holes = valid & impossible_values(values)
-        if holes.any():
-            found = sorted({float(value) for value in np.unique(values[holes])[:3]})
-            _warn(
-                "impossible_elevations",
-                "{path}: {n_cells:,} cells hold {values}, which is no elevation; they are taken "
-                "as nodata ({0} names another value, or {none})",
-                "nodata",
-                path=os.fspath(path),
-                n_cells=int(np.count_nonzero(holes)),
-                values=", ".join(f"{value:.8g}" for value in found),
-                none=NO_TAG,
-            )
-            valid &= ~holes
+        valid &= ~told_holes(values, valid, os.fspath(path))
     elif nodata != NO_TAG:
         number = float(nodata)
         info = np.iinfo(values.dtype) if values.dtype.kind in "iu" else None
@@ -223,22 +207,6 @@ def _valid_cells(
             )
         valid &= values != values.dtype.type(number)
     return valid
-
-
-def _tell_of_doubts(dem: Dem, path: str | os.PathLike[str]) -> None:
-    doubt = doubtful_value(dem.values[dem.valid])
-    if doubt is not None:
-        value, count, nearest = doubt
-        _warn(
-            "doubtful_elevations",
-            "{path}: {n_cells:,} cells hold {value:.8g} and the next value is {nearest:.8g}; they "
-            "are taken as elevations ({0} {value:.8g} makes them holes)",
-            "nodata",
-            path=os.fspath(path),
-            n_cells=count,
-            value=value,
-            nearest=nearest,
-        )
 
 
 def _warn(code: str, template: str, *options: str, **figures: Any) -> None:
