@@ -33,9 +33,6 @@ _MEANT_FOR = {
     "layer": (POINTS, TRIANGLES),
     "z_field": (POINTS,),
 }
-#: What an option is when nobody has given it; None or False where it is not
-#: named here.
-_DEFAULTS = {"duplicates": "lowest", "attributes": (), "carry": True}
 
 
 def require_meaning(path: object, kind: str, options: Mapping[str, Any]) -> None:
@@ -75,8 +72,10 @@ def require_meaning(path: object, kind: str, options: Mapping[str, Any]) -> None
 
 
 def _is_given(name: str, value: Any) -> bool:
-    if value is None or (value is False and name != "carry"):
+    if name == "carry":  # the one that is on by default
+        return value is False
+    if value is None or value is False:
         return False
     if name == "attributes":
         return len(value) > 0
-    return bool(value != _DEFAULTS.get(name))
+    return True
