@@ -14,6 +14,9 @@ __all__ = ["silent_libraries"]
 #: How GDAL's log lines begin: the class of the error, and where it was.
 _CLASS = re.compile(r"^CPLE_\w+(?: in )?:?\s*")
 
+#: Names that a library did not find in a data base of its own are no matter of the file.
+_OF_THE_LIBRARY = "proj.db"
+
 #: So much of what was said is kept.
 _MOST_HEARD = 65_536
 
@@ -26,7 +29,9 @@ class _Listener(logging.Handler):
         self._lines = lines
 
     def emit(self, record: logging.LogRecord) -> None:
-        self._lines.append(_CLASS.sub("", " ".join(record.getMessage().split())))
+        line = _CLASS.sub("", " ".join(record.getMessage().split()))
+        if _is_about_the_file(line):
+            self._lines.append(line)
 
 
 @contextmanager
@@ -64,4 +69,8 @@ def _printed(lines: list[str]) -> Iterator[None]:
             os.close(kept)
             heard.seek(0)
             text = heard.read(_MOST_HEARD).decode("utf-8", errors="replace")
-            lines += [line.strip() for line in text.splitlines() if line.strip()]
+            lines += [line.strip() for line in text.splitlines() if _is_about_the_file(line)]
+
+
+def _is_about_the_file(line: str) -> bool:
+    return bool(line.strip()) and _OF_THE_LIBRARY not in line

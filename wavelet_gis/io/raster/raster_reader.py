@@ -107,7 +107,7 @@ def read_dem(
     if said:
         _warn(
             "raster_read_with_complaints",
-            "{path}: read, but not without complaint, and cells may be wrong: {complaint}",
+            "{path}: read, but not without complaint of GDAL: {complaint}",
             path=os.fspath(path),
             complaint=said[0],
         )

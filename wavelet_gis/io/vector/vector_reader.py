@@ -88,7 +88,7 @@ def read_vector(
         warn(
             LayerWarning,
             "layer_read_with_complaints",
-            "{name}: read, but not without complaint: {complaint}",
+            "{name}: read, but not without complaint of GDAL: {complaint}",
             name=name,
             complaint=said[0],
         )
