@@ -1,6 +1,6 @@
 """Write docs/data-table.md: every file of the real test data, what became of it, and why so.
 
-    python3 scripts/data_table.py [--only SMALL|LARGE] [--data FOLDER]
+    python3 scripts/data_table.py [--only SMALL|LARGE|MISSING] [--data FOLDER]
 
 Each file goes through ``analyse`` and ``reconstruct`` and what comes back is compared with it: a
 raster bit for bit, with its mask; a LAS file byte for byte; a LAZ file by all bytes of its points.
@@ -218,21 +218,18 @@ def page(rows: list[tuple[str, str, str]]) -> str:
 def main() -> int:
     """Write the page; return the exit code."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--only", choices=("SMALL", "LARGE"))
+    parser.add_argument("--only", choices=("SMALL", "LARGE", "MISSING"))
     parser.add_argument("--data", type=Path, default=ROOT.parent / "shared" / "data")
     arguments = parser.parse_args()
-    known, rows = known_rows(), []
-    for path in files(arguments.data):
-        name = path.relative_to(arguments.data).as_posix()
-        size = "LARGE" if is_large(path) else "SMALL"
-        if arguments.only not in (None, size) and name in known:
-            rows.append(known[name])
-            continue
-        if arguments.only not in (None, size):
-            continue
-        rows.append(row(path, arguments.data))
-        print(f"{rows[-1][0]}: {rows[-1][1]}", flush=True)
-    PAGE.write_text(page(rows), "utf-8")
+    rows = known_rows()
+    names = [path.relative_to(arguments.data).as_posix() for path in files(arguments.data)]
+    for name in names:
+        path = arguments.data / name
+        states = {"LARGE" if is_large(path) else "SMALL", "TOLD" if name in rows else "MISSING"}
+        if arguments.only is None or arguments.only in states:
+            rows[name] = row(path, arguments.data)
+            print(f"{name}: {rows[name][1]}", flush=True)
+            PAGE.write_text(page([rows[one] for one in names if one in rows]), "utf-8")
     return 0
 
 

@@ -21,7 +21,7 @@ def row_of(path, data):
 @pytest.mark.data
 def test_every_file_has_its_row(data_folder):
     names = [path.relative_to(data_folder).as_posix() for path in data_table.files(data_folder)]
-    assert list(data_table.known_rows()) == names
+    assert list(data_table.known_rows()) == names, "run scripts/data_table.py --only MISSING"
     assert len(names) > 100
 
 

@@ -2,8 +2,12 @@
 
 The limit on a file's size (``ulimit -f``) stands for the disk: it fails at the same calls, at a
 byte that the test chooses, and needs no rights. To try every 50 kB of each output, apart from the
-suite: ``FULL_DISK_LIMITS=1000000 pytest tests/cli/test_full_disk.py --junitxml=full_disk.xml``; the
-property ``limits`` of each case tells how many.
+suite::
+
+    FULL_DISK_LIMITS=1000000 pytest tests/cli/test_full_disk.py --junitxml=full_disk.xml \\
+        -o junit_family=xunit1
+
+The property ``limits`` of each case tells how many.
 """
 
 import contextlib

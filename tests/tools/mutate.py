@@ -221,7 +221,9 @@ def _listen(worker: subprocess.Popen[bytes]) -> tuple[list[dict[str, Any]], dict
     current: int | None = None
     descriptor, pending = worker.stdout.fileno(), b""
     while True:
-        ready = select.select([descriptor], [], [], SECONDS * PATIENCE)[0]
+        ready = select.select([descriptor], [], [], 600 if current is None else SECONDS * PATIENCE)[
+            0
+        ]
         if not ready:
             worker.kill()
             return done, {"number": current, "what": "hang", "message": "", "seconds": SECONDS}

@@ -74,7 +74,7 @@ def random_dem(path, rng):
     options["compress"] = str(rng.choice(["deflate", "none", "lzw"]))
     write_tif(path, z, transform=place, **options)
     rows, columns = np.nonzero(~hole)
-    east, north = place * (columns + 0.5, rows + 0.5)
+    east, north = 5e5 + side * (columns + 0.5), 5.1e6 + place.e * (rows + 0.5)
     return np.column_stack([east, north, z[rows, columns].astype(float)])
 
 

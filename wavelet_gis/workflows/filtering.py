@@ -300,6 +300,8 @@ def denoised(
         )
         noise = found[name]
         _tell_of_outliers(geo.source_name, name, noise)
+        if noise.is_rough:
+            _tell_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
         sigmas[name] = noise.sigma / unit
         in_file = replace(
             noise,
@@ -312,6 +314,23 @@ def denoised(
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
     line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
     return geo.with_pyramid(pyramid, line), sigmas
+
+
+def _tell_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
+    """Warn that noise and relief were not to be told apart."""
+    kind = "white, since its range is not to be told either, and " if noise_range else ""
+    warn(
+        TerrainWarning,
+        "relief_as_fine_as_the_mesh",
+        "{name}: {channel} has relief as fine as the mesh, which cannot be told from noise; the "
+        "noise is taken to be {kind}that of the flattest places, {sigma:.4g} ({0} names another)",
+        "denoise",
+        stacklevel=4,
+        name=source,
+        channel=channel,
+        kind=kind,
+        sigma=sigma,
+    )
 
 
 def _tell_of_outliers(source: str, channel: str, noise: Noise) -> None:
