@@ -65,7 +65,7 @@ WHY_REFUSED = (
         "the compressed points cannot be read",
         "the points cannot be had, and the decoder must not take the program with it",
     ),
-    ("no raster that GDAL can open", "an index of tiles is no terrain; its tiles are"),
+    ("nor a layer that GDAL can open", "an index of tiles is no terrain; its tiles are"),
     ("give no elevations", "a scale of 0 makes one number of all elevations"),
     ("corners; a TIN is made of triangles", "the clip polygon of a case, no terrain"),
     ("holds neither points nor triangles", "the breakline of a case, no terrain"),
