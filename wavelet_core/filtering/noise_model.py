@@ -17,6 +17,10 @@ from .undecimated import UndecimatedBank, rings
 
 #: Least share of the values that rounding to a step must make alike for the step to be believed.
 LEAST_ALIKE = 0.5
+#: Rounding to a step leaves a deviation of step / sqrt(12), but what it leaves is alike along a
+#: terrace, and a filter for white noise must take twice its square to take it out. Measured on four
+#: DEMs rounded in 18 ways: never worse than step / sqrt(12), and up to a third of its error.
+ROUNDED = 6.0
 #: An outlier is so many standard deviations of the noise, plus so many times the relief of its
 #: ring, above the second highest of its neighbours or below the second lowest.
 OUTLIER_DEVIATIONS, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE = 5.0, 1.0, 4.0
@@ -147,7 +151,7 @@ def noise_of(
     values : ndarray, shape (n_vertices,)
     sigma : float, optional
         Standard deviation of the noise; by default estimated, and no less than what rounding to
-        the step of the values leaves, step / sqrt(12). Where the flattest places hold less than
+        the step of the values takes, step / sqrt(6). Where the flattest places hold less than
         others, relief as fine as the mesh is among it, and those tell.
     noise_range : float or "estimate"
         Distance at which the correlation of the noise has fallen to 1/e; 0 for white noise.
@@ -316,7 +320,7 @@ def correlated_noise(
 
 
 def _floored(sigma: float, quantum: float) -> float:
-    return max(sigma, quantum / np.sqrt(12.0))
+    return max(sigma, quantum / np.sqrt(ROUNDED))
 
 
 def _high(row: IntArray, values: FloatArray, rank: IntArray, n: int) -> FloatArray:
