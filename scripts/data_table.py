@@ -100,9 +100,10 @@ what it finds.
 
 
 def files(data: Path) -> Iterator[Path]:
-    """Yield the files of the data, in order."""
+    """Yield the files of the data, in order; not what programs leave beside rasters they opened."""
     for folder in FOLDERS:
-        yield from sorted(path for path in (data / folder).rglob("*") if path.is_file())
+        found = (path for path in (data / folder).rglob("*") if path.is_file())
+        yield from sorted(path for path in found if not path.name.endswith(".aux.xml"))
 
 
 def is_large(path: Path) -> bool:
