@@ -134,4 +134,5 @@ def flip_edges(start, stop, half_edges, base, tin, points):
 # Does the half-edge belong to one of the faces with these first half-edges?
 @inlined
 def is_of(half_edge, f, g):
-    return half_edge - half_edge % 3 in (f, g)
+    first = half_edge - half_edge % 3
+    return first == f or first == g

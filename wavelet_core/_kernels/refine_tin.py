@@ -88,20 +88,20 @@ def count_star_points(start, stop, chosen, tin, points, count):
             count[row] += points.count[spoke[k] // 3]
 
 
-# error, largest (n_faces,) float64, filled: the sum over the points of each face, and their largest
-# squared height error
+# error, squared, largest (n_faces,) float64, filled: what the errors in each face count for, the sum
+# of the squares of those in height, and the largest of these
 @kernel
-def sum_face_errors(start, stop, tin, points, aim, error, largest):
+def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest):
     x, y, z, origin = tin.x, tin.y, tin.z, tin.mesh.origin
     n_channels = z.shape[1]
     for face in range(start, stop):
-        error[face], largest[face] = 0.0, 0.0
+        error[face], squared_z[face], largest[face] = 0.0, 0.0, 0.0
         a, b, c = origin[3 * face], origin[3 * face + 1], origin[3 * face + 2]
         if a < 0:
             continue
         bx, by, cx, cy = x[b] - x[a], y[b] - y[a], x[c] - x[a], y[c] - y[a]
         per_area = 1.0 / (bx * cy - by * cx)
-        total, most = 0.0, 0.0
+        total, total_z, most = 0.0, 0.0, 0.0
         for k in range(points.first[face], points.first[face] + points.count[face]):
             p = points.pool[k]
             px, py = points.x[p] - x[a], points.y[p] - y[a]
@@ -113,9 +113,10 @@ def sum_face_errors(start, stop, tin, points, aim, error, largest):
                 off -= points.z[p, i]
                 squared += off * off
                 if i == 0:
+                    total_z += squared
                     most = max(most, squared)
             total += weighed(squared, aim.is_power)
-        error[face], largest[face] = total, most
+        error[face], squared_z[face], largest[face] = total, total_z, most
 
 
 # The first in order take what they need, others that need a part of it come too late.

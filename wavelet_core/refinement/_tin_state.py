@@ -1,6 +1,9 @@
-"""A coarse TIN that changes in place, and the input points in each of its faces."""
+"""A coarse TIN that changes in place, and which input points lie in each of its faces."""
 
 from __future__ import annotations
+
+import copy
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,268 +33,352 @@ from .._kernels.refine_tin import (
 )
 from .._validate import FloatArray, IntArray
 
-#: Longest ring of a vertex that may be taken out.
+#: Vertices with more neighbours than this are not taken out: they claim too much of the TIN.
 MAX_REMOVED_RING = 15
+#: The pool has room for so many times the points before it is put in order anew.
+ROOM = 3
+
+IndexArray = NDArray[np.int32]
+
+
+class FaceErrors(NamedTuple):
+    """Of each face: what its errors count for, the sum of squared height errors, their largest."""
+
+    error: FloatArray
+    squared_z: FloatArray
+    largest: FloatArray
+
+
+class _Removals(NamedTuple):
+    """Vertices that may go, onto which place of their ring, at what cost; most points of a star."""
+
+    vertex: IndexArray
+    target: IndexArray
+    cost: FloatArray
+    needs: IndexArray
+    capacity: int
+
+
+class _Insertions(NamedTuple):
+    """Points that may come, in which face or on which of its half-edges, how high, at what gain."""
+
+    face: IndexArray
+    point: IndexArray
+    on_edge: IndexArray
+    height: FloatArray
+    gain: FloatArray
 
 
 class TinState:
-    """A TIN in the making; see the kernels for what each pass does."""
+    """A TIN in the making.
+
+    Each pass works on parts that have nothing in common, chosen in an order that depends on the
+    TIN alone; the kernels say what it does to each.
+
+    Parameters
+    ----------
+    plan : (n_points, 2) float64
+        x and y of the input points, about a local origin.
+    columns : (n_points, n_channels) float64
+        Their heights and attributes, weighted.
+    heights : (n_vertices, n_channels) float64
+        Those of the TIN's vertices.
+    faces : (n_faces, 3) int32
+    vertex_ids : (n_vertices,) int64
+        The points that the vertices lie on.
+    face_of : (n_points,) int64
+        The face of each point, -1 for none.
+    locked : (n_vertices,) bool
+    aim : Aim
+    """
 
     def __init__(
         self,
         plan: FloatArray,
         columns: FloatArray,
-        faces: NDArray[np.int32],
         heights: FloatArray,
+        faces: IndexArray,
         vertex_ids: IntArray,
         face_of: IntArray,
         locked: NDArray[np.bool_],
         aim: Aim,
     ) -> None:
-        n, n_faces = len(vertex_ids), len(faces)
-        indptr = np.zeros(n + 1, dtype=np.int64)
-        star = np.empty(3 * n_faces, dtype=np.int32)
-        fill_stars(faces, indptr, star)
-        mesh = HalfEdges(
-            faces.ravel().copy(),
-            np.empty(3 * n_faces, dtype=np.int32),
-            np.empty(n, dtype=np.int32),
-        )
-        run_in_ranges(find_twins, n_faces, indptr, star, mesh)
-        n_fans = np.empty(n, dtype=np.int8)
-        run_in_ranges(find_outgoing, n, indptr, star, mesh, n_fans)
+        mesh, n_fans = _half_edges(faces, len(vertex_ids))
+        # where two fans meet, a walk sees one of them only
         held = locked | (n_fans != 1)
+        x, y = (np.ascontiguousarray(column) for column in plan.T)
         self.tin = Tin(
-            mesh,
-            plan[vertex_ids, 0].copy(),
-            plan[vertex_ids, 1].copy(),
-            heights.copy(),
-            vertex_ids.astype(np.int32),
-            held.copy(),
-            held.copy(),
-        )
+            mesh, x[vertex_ids], y[vertex_ids], heights.copy(), vertex_ids.astype(np.int32),
+            held, held.copy(),
+        )  # fmt: skip
         inside = np.flatnonzero(face_of >= 0)
-        order = inside[np.argsort(face_of[inside], kind="stable")].astype(np.int32)
-        count = np.bincount(face_of[inside], minlength=n_faces).astype(np.int64)
-        first = np.cumsum(count) - count
-        pool = np.empty(3 * len(order) + 64, dtype=np.int32)
-        pool[: len(order)] = order
-        self.points = Points(
-            np.ascontiguousarray(plan[:, 0]),
-            np.ascontiguousarray(plan[:, 1]),
-            columns,
-            first,
-            count,
-            pool,
-        )
-        self.n_used = len(order)
+        listed = inside[np.argsort(face_of[inside], kind="stable")]
+        count = np.bincount(face_of[inside], minlength=len(faces)).astype(np.int64)
+        pool = np.empty(ROOM * len(listed), dtype=np.int32)
+        pool[: len(listed)] = listed
+        self.points = Points(x, y, columns, np.cumsum(count) - count, count, pool)
         self.aim = aim
-        self.key = _scattered(n)
+        self._n_used = len(listed)
+        self._key = _scattered(len(vertex_ids))
+        self._lives = np.ones(len(vertex_ids), dtype=bool)
 
-    # -- sums ------------------------------------------------------------------------------------
+    @property
+    def n_vertices(self) -> int:
+        """How many vertices there are now."""
+        return int(np.count_nonzero(self._lives))
 
-    def face_errors(self) -> tuple[FloatArray, FloatArray]:
-        n_faces = len(self.points.first)
-        error, largest = np.empty(n_faces), np.empty(n_faces)
-        run_in_ranges(
-            sum_face_errors, n_faces, self.tin, self.points, self.aim, error, largest
+    def snapshot(self) -> TinState:
+        """Return a copy to go back to; lists in place are never written over."""
+        twin = copy.copy(self)
+        mesh = HalfEdges._make(array.copy() for array in self.tin.mesh)
+        twin.tin = Tin(mesh, *(array.copy() for array in self.tin[1:]))
+        twin.points = self.points._replace(
+            first=self.points.first.copy(), count=self.points.count.copy()
         )
-        return error, largest
+        twin._lives = self._lives.copy()
+        return twin
 
-    # -- passes ----------------------------------------------------------------------------------
+    # -- what there is ---------------------------------------------------------------------------
+
+    def face_errors(self) -> FaceErrors:
+        """Return the errors of all faces."""
+        errors = FaceErrors(*(np.empty(len(self.points.first)) for _ in range(3)))
+        run_in_ranges(
+            sum_face_errors, len(self.points.first), self.tin, self.points, self.aim, *errors
+        )
+        return errors
+
+    def faces(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Return the slots of the vertices and of the faces, and the faces by the former."""
+        slots = np.flatnonzero(self._lives)
+        slots = slots[np.argsort(self.tin.point[slots], kind="stable")]
+        position = np.full(len(self._lives), -1, dtype=np.int64)
+        position[slots] = np.arange(len(slots))
+        corners = self.tin.mesh.origin.reshape(-1, 3)
+        kept = np.flatnonzero(corners[:, 0] >= 0)
+        return slots, kept, position[corners[kept]]
+
+    def listed_points(self, kept: IntArray) -> tuple[IntArray, IntArray]:
+        """Return the points of the faces ``kept``, and in which of those each lies."""
+        count = self.points.count[kept]
+        face = np.repeat(np.arange(len(kept)), count)
+        ends = np.cumsum(count)
+        place = np.arange(len(face)) + np.repeat(self.points.first[kept] - ends + count, count)
+        return self.points.pool[place].astype(np.int64), face
+
+    # -- places and heights ----------------------------------------------------------------------
 
     def relocate(self) -> int:
         """Move each vertex to the best place near it, and its height; return how many moved."""
         mesh = self.tin.mesh
-        alive = np.flatnonzero((mesh.outgoing >= 0) & ~self.tin.is_locked)
+        alive = np.flatnonzero((mesh.outgoing >= 0) & ~self.tin.is_locked).astype(np.int32)
         colour = np.full(len(mesh.outgoing), -1, dtype=np.int8)
-        order = alive[np.argsort(self.key[alive], kind="stable")].astype(np.int32)
-        colour_vertices(order, mesh, colour)
-        n_moved = 0
-        for c in range(int(colour.max(initial=-1)) + 1):
-            chosen = np.flatnonzero(colour == c).astype(np.int32)
-            n_moved += self._relocate(chosen)
-        return n_moved
+        colour_vertices(alive[np.argsort(self._key[alive], kind="stable")], mesh, colour)
+        return sum(
+            self._relocate(np.flatnonzero(colour == c).astype(np.int32))
+            for c in range(int(colour.max(initial=-1)) + 1)
+        )
 
-    def _relocate(self, chosen: NDArray[np.int32]) -> int:
-        k, n_channels = len(chosen), self.tin.z.shape[1]
-        counts = np.empty(k, dtype=np.int64)
-        run_in_ranges(count_star_points, k, chosen, self.tin, self.points, counts)
+    def _relocate(self, chosen: IndexArray) -> int:
+        n = len(chosen)
+        counts = self._star_points(chosen)
         capacity = int(counts.max(initial=0))
-        to, gain = np.empty(k, dtype=np.int32), np.empty(k)
-        shift = np.empty((k, n_channels))
+        to, gain = np.empty(n, dtype=np.int32), np.empty(n)
+        shift = np.empty((n, self.tin.z.shape[1]))
         run_in_ranges(
-            propose_moves, k, chosen, self.tin, self.points, self.aim, capacity, to, shift, gain
+            propose_moves, n, chosen, self.tin, self.points, self.aim, capacity, to, shift, gain
         )
-        base = self._room_for(np.where(to >= 0, counts, 0))
+        moves = to >= 0
+        base = self._room_for(np.where(moves, counts, 0))
         run_in_ranges(
-            move_vertices, k, chosen, to, shift, base, self.tin, self.points, capacity
+            move_vertices, n, chosen, to, shift, base, self.tin, self.points, capacity
         )
-        return int(np.count_nonzero(to >= 0))
+        return int(np.count_nonzero(moves))
+
+    def _star_points(self, chosen: IndexArray) -> IntArray:
+        counts = np.empty(len(chosen), dtype=np.int64)
+        run_in_ranges(count_star_points, len(chosen), chosen, self.tin, self.points, counts)
+        return counts
+
+    # -- edges -----------------------------------------------------------------------------------
 
     def flip(self, n_passes: int) -> int:
-        """Turn edges that lie better the other way; return how many."""
+        """Turn edges that lie better the other way, the best first; return how many."""
         mesh = self.tin.mesh
         half_edges = np.flatnonzero(mesh.twin > np.arange(len(mesh.twin))).astype(np.int32)
         gains = np.zeros(len(mesh.twin))
         n_flipped = 0
         for _ in range(n_passes):
-            error, _ = self.face_errors()
             gain = np.empty(len(half_edges))
             run_in_ranges(
                 gains_of_flips, len(half_edges), half_edges, self.tin, self.points, self.aim,
-                error, gain,
+                self.face_errors().error, gain,
             )  # fmt: skip
             gains[half_edges] = gain
-            rows = np.flatnonzero(gains > 0.0).astype(np.int32)
-            if len(rows) == 0:
+            chosen = self._apart(np.flatnonzero(gains > 0.0).astype(np.int32), gains)
+            if len(chosen) == 0:
                 break
-            order = np.argsort(-gains[rows], kind="stable")
-            other = mesh.twin[rows]
-            needs = np.column_stack(
-                [
-                    mesh.origin[rows],
-                    mesh.origin[other],
-                    mesh.origin[_before(rows)],
-                    mesh.origin[_before(other)],
-                ]
-            ).astype(np.int32)
-            wins = np.empty(len(rows), dtype=bool)
-            take_in_order(order, needs, np.zeros(len(mesh.outgoing), dtype=bool), wins)
-            chosen = rows[wins]
             faces = np.column_stack([chosen // 3, mesh.twin[chosen] // 3])
             base = self._room_for(self.points.count[faces].sum(axis=1))
             run_in_ranges(flip_edges, len(chosen), chosen, base, self.tin, self.points)
             n_flipped += len(chosen)
-            touched = np.zeros(len(self.points.first), dtype=bool)
-            touched[faces] = True
-            around = np.flatnonzero(np.repeat(touched, 3)).astype(np.int32)
+            around = (3 * faces.reshape(-1, 1) + np.arange(3)).ravel()
+            beyond = mesh.twin[around]
             gains[around] = 0.0
-            twins = mesh.twin[around]
-            gains[twins[twins >= 0]] = 0.0
-            around = np.minimum(around[twins >= 0], twins[twins >= 0])
-            half_edges = np.unique(around).astype(np.int32)
+            gains[beyond[beyond >= 0]] = 0.0
+            lower = np.minimum(around, beyond)
+            half_edges = np.unique(lower[lower >= 0]).astype(np.int32)
         return n_flipped
 
-    def removals(
-        self, bound: float, with_outline: bool
-    ) -> tuple[NDArray[np.int32], NDArray[np.int32], FloatArray, int]:
-        """Return vertices that may go, onto which place of their ring, at what cost."""
-        tin = self.tin
-        alive = np.flatnonzero((tin.mesh.outgoing >= 0) & ~tin.is_locked).astype(np.int32)
-        k = len(alive)
-        counts = np.empty(k, dtype=np.int64)
-        run_in_ranges(count_star_points, k, alive, tin, self.points, counts)
-        error, _ = self.face_errors()
-        target, cost = np.empty(k, dtype=np.int32), np.empty(k)
-        run_in_ranges(
-            propose_removals, k, alive, tin, self.points, self.aim, error, bound,
-            int(counts.max(initial=0)), with_outline, target, cost,
-        )  # fmt: skip
-        found = target >= 0
-        return alive[found], target[found], cost[found], int(counts.max(initial=0))
+    def _apart(self, half_edges: IndexArray, gains: FloatArray) -> IndexArray:
+        """Return edges whose quadrangles have no vertex in common."""
+        mesh = self.tin.mesh
+        other = mesh.twin[half_edges]
+        corners = (half_edges, other, _before(half_edges), _before(other))
+        needs = np.column_stack([mesh.origin[corner] for corner in corners])
+        return half_edges[self._first(np.argsort(-gains[half_edges], kind="stable"), needs)]
 
-    def insertions(self) -> tuple[IntArray, ...]:
-        n_faces = len(self.points.first)
-        faces = np.arange(n_faces, dtype=np.int32)
-        point, on_edge = np.empty(n_faces, dtype=np.int32), np.empty(n_faces, dtype=np.int32)
-        height, gain = np.empty((n_faces, self.tin.z.shape[1])), np.empty(n_faces)
-        run_in_ranges(
-            propose_insertions, n_faces, faces, self.tin, self.points, self.aim, point, on_edge,
-            height, gain,
-        )  # fmt: skip
-        found = np.flatnonzero(point >= 0)
-        return faces[found], point[found], on_edge[found], height[found], gain[found]
+    def _first(self, order: IntArray, needs: IndexArray) -> NDArray[np.bool_]:
+        """Return which rows get all the vertices that they need."""
+        wins = np.zeros(len(needs), dtype=bool)
+        is_taken = np.zeros(len(self._lives), dtype=bool)
+        take_in_order(order, np.ascontiguousarray(needs), is_taken, wins)
+        return wins
+
+    # -- vertices that go, and that come ---------------------------------------------------------
 
     def replace(self, most: int, ratio: float) -> int:
-        """Take out the vertices that help least and insert as many where that helps more."""
-        mesh = self.tin.mesh
-        faces, point, on_edge, height, gain = self.insertions()
-        if len(faces) == 0:
+        """Take out the vertices that help least, and put as many where they help more.
+
+        The k-th cheapest makes room for the k-th best, at most ``most`` of them, while the one
+        costs less than ``ratio`` times what the other gains; those whose surroundings meet wait.
+        """
+        wanted = self._insertions()
+        most = min(most, len(wanted.gain))
+        if most == 0:
             return 0
-        most = min(most, len(faces))
-        top = np.partition(gain, len(gain) - most)[len(gain) - most :]
-        bound = float(top.max()) * ratio
-        chosen, target, cost, capacity = self.removals(bound, False)
-        if len(chosen) == 0:
-            return 0
-        width = MAX_REMOVED_RING + 1
-        needs = np.empty((len(chosen), width + 1), dtype=np.int32)
-        run_in_ranges(list_stars, len(chosen), chosen, mesh, needs)
-        fits = needs[:, -1] < 0
-        chosen, target, cost, needs = chosen[fits], target[fits], cost[fits], needs[fits]
-        corners = np.empty((len(faces), 4), dtype=np.int32)
-        run_in_ranges(list_corners, len(faces), faces, on_edge, mesh, corners)
-        # both in order of what they are worth, side by side: the k-th cheapest for the k-th best
-        by_cost, by_gain = np.argsort(cost, kind="stable"), np.argsort(-gain, kind="stable")
-        n = min(len(by_cost), len(by_gain), most)
-        pays = cost[by_cost[:n]] < ratio * gain[by_gain[:n]]
-        n = int(np.argmin(pays)) if not pays.all() else n
-        if n == 0:
-            return 0
+        by_gain = np.argsort(-wanted.gain, kind="stable")[:most]
+        spare = self._removals(ratio * float(wanted.gain[by_gain[0]]), with_outline=False)
+        by_cost = np.argsort(spare.cost, kind="stable")[:most]
+        n = min(len(by_cost), len(by_gain))
+        pays = spare.cost[by_cost[:n]] < ratio * wanted.gain[by_gain[:n]]
+        n = int(np.count_nonzero(pays))  # the one rises, the other falls
         outs, ins = by_cost[:n], by_gain[:n]
-        needs = np.vstack([needs[outs], _widened(corners[ins], needs.shape[1])])
-        order = np.arange(2 * n).reshape(2, n).T.ravel()
-        wins = np.empty(2 * n, dtype=bool)
-        take_in_order(order, needs, np.zeros(len(mesh.outgoing), dtype=bool), wins)
+        corners = np.full((n, spare.needs.shape[1]), -1, dtype=np.int32)
+        list_corners(0, n, wanted.face[ins], wanted.on_edge[ins], self.tin.mesh, corners)
+        order = np.arange(2 * n).reshape(2, n).T.ravel()  # in turns
+        wins = self._first(order, np.vstack([spare.needs[outs], corners]))
         outs, ins = outs[wins[:n]], ins[wins[n:]]
         n = min(len(outs), len(ins))
         outs, ins = outs[:n], ins[:n]
-        freed = self._remove(chosen[outs], target[outs], capacity)
-        self._insert(
-            faces[ins], on_edge[ins], point[ins], height[ins], chosen[outs], freed, capacity
-        )
+        vertex = spare.vertex[outs]
+        freed = self._remove(vertex, spare.target[outs], spare.capacity)
+        self._insert(_Insertions(*(array[ins] for array in wanted)), vertex, freed)
         return n
 
-    def _remove(self, chosen, target, capacity):
-        k = len(chosen)
-        counts = np.empty(k, dtype=np.int64)
-        run_in_ranges(count_star_points, k, chosen, self.tin, self.points, counts)
-        base = self._room_for(counts)
-        freed = np.empty((k, 2), dtype=np.int32)
+    def thin(self, budget: float = np.inf) -> int:
+        """Take out vertices, the cheapest first; return how many.
+
+        Their costs sum to at most ``budget``; no tolerance of the aim is broken.
+        """
+        spare = self._removals(np.inf, with_outline=True)
+        order = np.argsort(spare.cost, kind="stable")
+        # what could be had if none stood in another's way: dearer ones wait for the next pass
+        n = np.searchsorted(np.maximum.accumulate(np.cumsum(spare.cost[order])), budget, "right")
+        wins = self._first(order[:n], spare.needs)
+        order = np.sort(order[wins[order]])
+        vertex = spare.vertex[order]
+        self._remove(vertex, spare.target[order], spare.capacity)
+        self._lives[vertex] = False
+        return len(vertex)
+
+    def _removals(self, bound: float, *, with_outline: bool) -> _Removals:
+        tin = self.tin
+        vertex = np.flatnonzero((tin.mesh.outgoing >= 0) & ~tin.is_locked).astype(np.int32)
+        counts = self._star_points(vertex)
+        capacity = int(counts.max(initial=0))
+        target, cost = np.empty(len(vertex), dtype=np.int32), np.empty(len(vertex))
         run_in_ranges(
-            remove_vertices, k, chosen, target, base, self.tin, self.points, capacity, freed
-        )
+            propose_removals, len(vertex), vertex, tin, self.points, self.aim,
+            self.face_errors().error, bound, capacity, with_outline, target, cost,
+        )  # fmt: skip
+        found = np.flatnonzero(target >= 0)
+        needs = np.empty((len(found), MAX_REMOVED_RING + 2), dtype=np.int32)
+        run_in_ranges(list_stars, len(found), vertex[found], tin.mesh, needs)
+        fits = needs[:, -1] < 0
+        found, needs = found[fits], needs[fits]
+        return _Removals(vertex[found], target[found], cost[found], needs, capacity)
+
+    def _insertions(self) -> _Insertions:
+        n = len(self.points.first)
+        face = np.arange(n, dtype=np.int32)
+        point, on_edge = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
+        height, gain = np.empty((n, self.tin.z.shape[1])), np.empty(n)
+        run_in_ranges(
+            propose_insertions, n, face, self.tin, self.points, self.aim, point, on_edge, height,
+            gain,
+        )  # fmt: skip
+        found = np.flatnonzero(point >= 0)
+        return _Insertions(*(array[found] for array in (face, point, on_edge, height, gain)))
+
+    def _remove(self, vertex: IndexArray, target: IndexArray, capacity: int) -> IndexArray:
+        """Collapse vertices onto places of their rings; return the two faces that each frees."""
+        base = self._room_for(self._star_points(vertex))
+        freed = np.empty((len(vertex), 2), dtype=np.int32)
+        run_in_ranges(
+            remove_vertices, len(vertex), vertex, target, base, self.tin, self.points, capacity,
+            freed,
+        )  # fmt: skip
         return freed
 
-    def _insert(self, faces, on_edge, point, height, vertex, free, capacity):
-        counts = self.points.count[faces].copy()
-        split = on_edge >= 0
-        counts[split] += self.points.count[self.tin.mesh.twin[on_edge[split]] // 3]
+    def _insert(self, new: _Insertions, vertex: IndexArray, free: IndexArray) -> None:
+        counts = self.points.count[new.face]
+        split = new.on_edge >= 0
+        counts[split] += self.points.count[self.tin.mesh.twin[new.on_edge[split]] // 3]
         base = self._room_for(counts)
         run_in_ranges(
-            insert_vertices, len(faces), faces, on_edge, point, height, vertex, free, base,
-            self.tin, self.points, int(counts.max(initial=0)),
+            insert_vertices, len(vertex), new.face, new.on_edge, new.point, new.height, vertex,
+            free, base, self.tin, self.points, int(counts.max(initial=0)),
         )  # fmt: skip
 
     # -- room ------------------------------------------------------------------------------------
 
     def _room_for(self, counts: IntArray) -> IntArray:
-        """Return where in the pool there is room for so many points each."""
+        """Return where in the pool there is room for lists of such lengths."""
         total = int(counts.sum())
-        if self.n_used + total > len(self.points.pool):
+        if self._n_used + total > len(self.points.pool):
             count = self.points.count
             first = np.cumsum(count) - count
-            n = int(count.sum())
-            pool = np.empty(max(len(self.points.pool), n + total), dtype=np.int32)
+            self._n_used = int(count.sum())
+            pool = np.empty(ROOM * self._n_used + total, dtype=np.int32)
             run_in_ranges(copy_lists, len(count), self.points, first, pool)
             self.points = self.points._replace(first=first, pool=pool)
-            self.n_used = n
-        base = np.cumsum(counts) - counts + self.n_used
-        self.n_used += total
+        base = np.cumsum(counts) - counts + self._n_used
+        self._n_used += total
         return base
 
 
-def _before(half_edge):
+def _half_edges(faces: IndexArray, n_vertices: int) -> tuple[HalfEdges, NDArray[np.int8]]:
+    """Return the half-edge mesh, and how many fans of faces are around each vertex (0, 1, 2)."""
+    indptr = np.zeros(n_vertices + 1, dtype=np.int64)
+    star = np.empty(3 * len(faces), dtype=np.int32)
+    fill_stars(faces, indptr, star)
+    mesh = HalfEdges(
+        faces.ravel().copy(),
+        np.empty(3 * len(faces), dtype=np.int32),
+        np.empty(n_vertices, dtype=np.int32),
+    )
+    run_in_ranges(find_twins, len(faces), indptr, star, mesh)
+    n_fans = np.empty(n_vertices, dtype=np.int8)
+    run_in_ranges(find_outgoing, n_vertices, indptr, star, mesh, n_fans)
+    return mesh, n_fans
+
+
+def _before(half_edge: IndexArray) -> IndexArray:
     return half_edge - 1 + 3 * (half_edge % 3 == 0)
 
 
-def _widened(needs, width):
-    wide = np.full((len(needs), width), -1, dtype=np.int32)
-    wide[:, : needs.shape[1]] = needs
-    return wide
-
-
 def _scattered(n: int) -> NDArray[np.uint32]:
+    """Return a different number for each vertex, without order."""
     key = np.arange(n, dtype=np.uint32) * np.uint32(2654435761)
     return (key ^ (key >> np.uint32(15))) * np.uint32(2246822519)
