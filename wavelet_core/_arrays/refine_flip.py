@@ -27,7 +27,7 @@ def gains_of_flips(start, stop, half_edges, tin, points, aim, error, gain):
     legal &= is_wide(x[a], y[a], x[d], y[d], x[c], y[c])
     legal &= is_wide(x[d], y[d], x[b], y[b], x[c], y[c])
     rows = np.flatnonzero(legal)
-    for part in blocks(points.count[faces[rows]].sum(axis=1) + 1, POINTS_AT_ONCE):
+    for part in blocks(points.n_points[faces[rows]].sum(axis=1) + 1, POINTS_AT_ONCE):
         at = rows[part]
         corners = a[at], b[at], c[at], d[at]
         _gains(at, corners, faces[at], present[at], tin, points, aim, gain)
@@ -45,9 +45,7 @@ def _gains(at, corners, faces, present, tin, points, aim, gain):
             ux, uy = x[u] - x[c], y[u] - y[c]
             per_area = 1.0 / (ux * dy - uy * dx)
             to_u, to_d = z[u, i] - z[c, i], z[d, i] - z[c, i]
-            slopes.append(
-                ((to_u * dy - to_d * uy) * per_area, (to_d * ux - to_u * dx) * per_area)
-            )
+            slopes.append(((to_u * dy - to_d * uy) * per_area, (to_d * ux - to_u * dx) * per_area))
         slope_x, slope_y = (np.column_stack([slopes[0][k], slopes[1][k]]) for k in (0, 1))
         off = z[c, i][row] + slope_x[row, side] * px + slope_y[row, side] * py - points.z[p, i]
         squared += off * off
@@ -60,7 +58,7 @@ def _gains(at, corners, faces, present, tin, points, aim, gain):
 
 def _points_beside(faces, c, d, tin, points):
     """Return the points of pairs of faces, from c, and on which side of c d each lies."""
-    row, place = expanded(points.first[faces].ravel(), points.count[faces].ravel())
+    row, place = expanded(points.first[faces].ravel(), points.n_points[faces].ravel())
     row //= 2
     p = points.pool[place]
     px, py = points.x[p] - tin.x[c][row], points.y[p] - tin.y[c][row]

@@ -23,9 +23,9 @@ def find_side(hint, size, n_sides, ring_x, ring_y, row, x, y):
             break
         here, side = row[open_], k[open_]
         following = following_of(side, size)
-        holds = (
-            ring_x[here, side] * y[open_] - ring_y[here, side] * x[open_] >= 0.0
-        ) & (ring_x[here, following] * y[open_] - ring_y[here, following] * x[open_] <= 0.0)
+        holds = (ring_x[here, side] * y[open_] - ring_y[here, side] * x[open_] >= 0.0) & (
+            ring_x[here, following] * y[open_] - ring_y[here, following] * x[open_] <= 0.0
+        )
         found[open_[holds]] = side[holds]
         open_ = open_[~holds]
         side = k[open_]

@@ -109,8 +109,9 @@ def _remove(stars, j, is_mine, base, tin, points, freed):
     ring, spoke = stars.ring[rows], stars.spoke[rows]
     places = (j + 1 + np.arange(size - 1)) % size
     a = ring[:, j]
-    seen_x, seen_y = tin.x[ring[:, places]] - tin.x[a][:, None], (
-        tin.y[ring[:, places]] - tin.y[a][:, None]
+    seen_x, seen_y = (
+        tin.x[ring[:, places]] - tin.x[a][:, None],
+        (tin.y[ring[:, places]] - tin.y[a][:, None]),
     )
     px, py = points.x[p] - tin.x[a][row], points.y[p] - tin.y[a][row]
     hint = _fan_place(stars.side[mine], j, size)
@@ -145,7 +146,7 @@ def _remove(stars, j, is_mine, base, tin, points, freed):
         freed[at, 1] = gone // 3
     outgoing[stars.v[rows]] = -1
     faces = freed[at][freed[at] >= 0]
-    points.count[faces] = 0
+    points.n_points[faces] = 0
     corners = 3 * faces[:, None] + np.arange(3)
     origin[corners], twin[corners] = -1, -1
 
@@ -156,7 +157,7 @@ def _remove(stars, j, is_mine, base, tin, points, freed):
 def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, height, gain):
     point[:], on_edge[:], gain[:], height[:] = -1, -1, 0.0, 0.0
     rows = np.flatnonzero(tin.mesh.origin[3 * faces] >= 0)
-    for part in blocks(points.count[faces[rows]] + 1, POINTS_AT_ONCE):
+    for part in blocks(points.n_points[faces[rows]] + 1, POINTS_AT_ONCE):
         at = rows[part]
         row, p, rank = _largest_errors(faces[at], tin, points)
         for t in range(N_INSERTIONS):
@@ -189,7 +190,7 @@ def _squared(off):
 
 def _largest_errors(faces, tin, points):
     """Return the points of the largest errors of each face, the largest first."""
-    row, place = expanded(points.first[faces], points.count[faces])
+    row, place = expanded(points.first[faces], points.n_points[faces])
     p = points.pool[place]
     squared = _squared(_errors_at(faces[row], p, tin, points)[1])
     kept = np.flatnonzero(squared > 0.0)
@@ -221,7 +222,7 @@ def _try(at, q, faces, tin, points, aim, point, on_edge, height, gain):
         rows = np.arange(n) if half == 0 else np.flatnonzero(edge >= 0)
         here = (face if half == 0 else second)[rows]
         share = own[rows] if half == 0 else _errors_at(here, q[rows], tin, points)[0]
-        row, place = expanded(points.first[here], points.count[here])
+        row, place = expanded(points.first[here], points.n_points[here])
         p, of = points.pool[place], rows[row]
         weights, off = _errors_at(here[row], p, tin, points)
         inverse = np.full(share.shape, np.inf)
@@ -303,7 +304,7 @@ def _insert(rows, size, faces, on_edge, vertex, free, base, tin, points):
         slot = np.column_stack([face, free[rows, 0], other // 3, free[rows, 1]])
     rim, beyond = origin[half_edges], twin[half_edges]
     seen_x, seen_y = tin.x[rim] - tin.x[v][:, None], tin.y[rim] - tin.y[v][:, None]
-    row, place = expanded(points.first[old].ravel(), points.count[old].ravel())
+    row, place = expanded(points.first[old].ravel(), points.n_points[old].ravel())
     row //= old.shape[1]
     p = points.pool[place]
     px, py = points.x[p] - tin.x[v][row], points.y[p] - tin.y[v][row]

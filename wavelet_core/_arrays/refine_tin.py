@@ -51,7 +51,7 @@ def stars_of(chosen, may, tin, points) -> Iterator[Stars]:
     rows = np.flatnonzero(may)
     rings = rings_of(chosen[rows], tin.mesh)
     spokes = rings.spoke
-    counts = np.where(spokes >= 0, points.count[np.maximum(spokes, 0) // 3], 0).sum(axis=1)
+    counts = np.where(spokes >= 0, points.n_points[np.maximum(spokes, 0) // 3], 0).sum(axis=1)
     kind = 2 * rings.size + (rings.n_sides < rings.size)
     for which in np.unique(kind[rings.size > 0]):
         same = np.flatnonzero(kind == which)
@@ -61,7 +61,7 @@ def stars_of(chosen, may, tin, points) -> Iterator[Stars]:
             v = chosen[rows[at]]
             ring, spoke = rings.ring[at, :size], rings.spoke[at, :n_sides]
             faces = spoke // 3
-            row, place = expanded(points.first[faces].ravel(), points.count[faces].ravel())
+            row, place = expanded(points.first[faces].ravel(), points.n_points[faces].ravel())
             row, side = row // n_sides, row % n_sides
             p = points.pool[place]
             centre = v[row]
@@ -96,7 +96,7 @@ def count_star_points(start, stop, chosen, tin, points, count):
     count[:] = 0
     rows = np.flatnonzero(tin.mesh.outgoing[chosen] >= 0)
     spokes = rings_of(chosen[rows], tin.mesh).spoke
-    counts = np.where(spokes >= 0, points.count[np.maximum(spokes, 0) // 3], 0)
+    counts = np.where(spokes >= 0, points.n_points[np.maximum(spokes, 0) // 3], 0)
     count[rows] = counts.sum(axis=1)
 
 
@@ -104,13 +104,13 @@ def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest_z):
     corners = tin.mesh.origin.reshape(-1, 3)
     alive = np.flatnonzero(corners[:, 0] >= 0)
     error[:], squared_z[:], largest_z[:] = 0.0, 0.0, 0.0
-    for part in blocks(points.count[alive] + 1, POINTS_AT_ONCE):
+    for part in blocks(points.n_points[alive] + 1, POINTS_AT_ONCE):
         faces = alive[part]
         a, b, c = corners[faces].T
         bx, by = tin.x[b] - tin.x[a], tin.y[b] - tin.y[a]
         cx, cy = tin.x[c] - tin.x[a], tin.y[c] - tin.y[a]
         per_area = 1.0 / (bx * cy - by * cx)
-        row, place = expanded(points.first[faces], points.count[faces])
+        row, place = expanded(points.first[faces], points.n_points[faces])
         p = points.pool[place]
         px, py = points.x[p] - tin.x[a][row], points.y[p] - tin.y[a][row]
         at_b = (px * cy[row] - py * cx[row]) * per_area[row]
@@ -172,8 +172,8 @@ def colour_vertices(order, mesh, colour):
 
 
 def copy_lists(start, stop, points, first, pool):
-    row, place = expanded(points.first, points.count)
-    _, to = expanded(first, points.count)
+    _row, place = expanded(points.first, points.n_points)
+    _, to = expanded(first, points.n_points)
     pool[to] = points.pool[place]
 
 
@@ -199,4 +199,4 @@ def hand_over(row, slot, p, base, faces, points):
     _, to = expanded(base, count.sum(axis=1))
     points.pool[to] = p[order]
     there = faces >= 0
-    points.first[faces[there]], points.count[faces[there]] = first[there], count[there]
+    points.first[faces[there]], points.n_points[faces[there]] = first[there], count[there]

@@ -1,11 +1,11 @@
-"""Kernels of :mod:`wavelet_core.refinement`: edges that lie better across their quadrangle.
+r"""Kernels of :mod:`wavelet_core.refinement`: edges that lie better across their quadrangle.
 
 The edge from a to b, with c on its left and d on its right, becomes the edge from c to d::
 
           c                      c
-        /   \\                  / | \\
+        /   \                  / | \
       a ----- b      to       a   |   b
-        \\   /                  \\ | /
+        \   /                  \ | /
           d                      d
 """
 
@@ -61,7 +61,7 @@ def gains_of_flips(start, stop, half_edges, tin, points, aim, error, gain):
                 slope_y[side, i] = (to_d * ux - to_u * dx) * per_area
         total, largest = 0.0, 0.0
         for face in faces:
-            for place in range(points.first[face], points.first[face] + points.count[face]):
+            for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 p = points.pool[place]
                 px, py = points.x[p] - x[c], points.y[p] - y[c]
                 side = 1 if dx * py - dy * px >= 0.0 else 0
@@ -92,7 +92,7 @@ def flip_edges(start, stop, half_edges, base, tin, points):
             place_in_pool = base[row] + n_first
             n_here = 0
             for face in (first_face, second_face):
-                for place in range(points.first[face], points.first[face] + points.count[face]):
+                for place in range(points.first[face], points.first[face] + points.n_points[face]):
                     p = points.pool[place]
                     px, py = points.x[p] - x[c], points.y[p] - y[c]
                     if (dx * py - dy * px >= 0.0) == (turn == 1):
@@ -101,9 +101,9 @@ def flip_edges(start, stop, half_edges, base, tin, points):
             if turn == 0:
                 n_first = n_here
             else:
-                points.first[first_face], points.count[first_face] = base[row], n_first
+                points.first[first_face], points.n_points[first_face] = base[row], n_first
                 points.first[second_face] = base[row] + n_first
-                points.count[second_face] = n_here
+                points.n_points[second_face] = n_here
         beyond_bc, beyond_ca = twin[after(half_edge)], twin[before(half_edge)]
         beyond_ad, beyond_db = twin[after(other)], twin[before(other)]
         # the first face becomes (a, d, c), the second one (d, b, c)
@@ -134,5 +134,4 @@ def flip_edges(start, stop, half_edges, base, tin, points):
 # Does the half-edge belong to one of the faces with these first half-edges?
 @inlined
 def is_of(half_edge, f, g):
-    first = half_edge - half_edge % 3
-    return first == f or first == g
+    return half_edge - half_edge % 3 in (f, g)

@@ -88,7 +88,7 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
             squares = 0.0
             part[:] = 0.0
             face = spoke[k] // 3
-            for place in range(points.first[face], points.first[face] + points.count[face]):
+            for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 p = points.pool[place]
                 px, py = points.x[p] - x[v], points.y[p] - y[v]
                 near[n], side[n], near_x[n], near_y[n] = p, k, px, py
@@ -129,9 +129,7 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
         if tin.stays[v]:
             continue
         is_outline = n_sides < size
-        if is_outline and not is_straight(
-            ring_x[0], ring_y[0], ring_x[size - 1], ring_y[size - 1]
-        ):
+        if is_outline and not is_straight(ring_x[0], ring_y[0], ring_x[size - 1], ring_y[size - 1]):
             continue
         # -- the most promising places
         n_trials = 0
@@ -224,9 +222,7 @@ def move_vertices(start, stop, chosen, to, shift, base, tin, points, capacity):
             z[v, i] += shift[row, i]
         if to[row] < 0:
             continue
-        size, n_sides = walk_ring(
-            v, tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing, ring, spoke
-        )
+        size, n_sides = walk_ring(v, tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing, ring, spoke)
         tin.point[v] = to[row]
         x[v], y[v] = points.x[to[row]], points.y[to[row]]
         for k in range(size):
@@ -235,7 +231,7 @@ def move_vertices(start, stop, chosen, to, shift, base, tin, points, capacity):
         n = 0
         for k in range(n_sides):
             face = spoke[k] // 3
-            for place in range(points.first[face], points.first[face] + points.count[face]):
+            for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 p = points.pool[place]
                 px, py = points.x[p] - x[v], points.y[p] - y[v]
                 near[n], side[n] = p, find_side(k, size, n_sides, seen_x, seen_y, px, py)
@@ -244,9 +240,9 @@ def move_vertices(start, stop, chosen, to, shift, base, tin, points, capacity):
         opening = base[row]
         for k in range(n_sides):
             face = spoke[k] // 3
-            points.first[face], points.count[face] = opening, cursor[k]
+            points.first[face], points.n_points[face] = opening, cursor[k]
             cursor[k] = opening
-            opening += points.count[face]
+            opening += points.n_points[face]
         for p in range(n):
             points.pool[cursor[side[p]]] = near[p]
             cursor[side[p]] += 1

@@ -44,17 +44,14 @@ def propose_removals(
         target[row], cost[row] = -1, np.inf
         if tin.mesh.outgoing[v] < 0 or tin.is_locked[v]:
             continue
-        size, n_sides = walk_ring(
-            v, tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing, ring, spoke
-        )
+        size, n_sides = walk_ring(v, tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing, ring, spoke)
         if size < 3:
             continue
         is_outline = n_sides < size
         for k in range(size):
             ring_x[k], ring_y[k] = x[ring[k]] - x[v], y[ring[k]] - y[v]
         if is_outline and not (
-            with_outline
-            and is_straight(ring_x[0], ring_y[0], ring_x[size - 1], ring_y[size - 1])
+            with_outline and is_straight(ring_x[0], ring_y[0], ring_x[size - 1], ring_y[size - 1])
         ):
             continue
         if tin.stays[v] and not is_outline:
@@ -63,7 +60,7 @@ def propose_removals(
         for k in range(n_sides):
             face = spoke[k] // 3
             present += error[face]
-            for place in range(points.first[face], points.first[face] + points.count[face]):
+            for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 near[n], side[n] = points.pool[place], k
                 n += 1
         limit = present + bound
@@ -133,7 +130,7 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
         n = 0
         for k in range(n_sides):
             face = spoke[k] // 3
-            for place in range(points.first[face], points.first[face] + points.count[face]):
+            for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 p = points.pool[place]
                 px, py = points.x[p] - x[a], points.y[p] - y[a]
                 near[n] = p
@@ -145,9 +142,9 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
         opening = base[row]
         for t in range(size - 2):
             face = spoke[(j + 1 + t) % size] // 3
-            points.first[face], points.count[face] = opening, cursor[t]
+            points.first[face], points.n_points[face] = opening, cursor[t]
             cursor[t] = opening
-            opening += points.count[face]
+            opening += points.n_points[face]
         for q in range(n):
             points.pool[cursor[side[q]]] = near[q]
             cursor[side[q]] += 1
@@ -184,7 +181,7 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
         for f in range(2):
             if freed[row, f] >= 0:
                 face = freed[row, f]
-                points.count[face] = 0
+                points.n_points[face] = 0
                 for corner in range(3):
                     origin[3 * face + corner], twin[3 * face + corner] = -1, -1
 
@@ -193,8 +190,8 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
 # half-edge that it lies on, -1 inside; its height (k, c) float64; gain (k,) float64
 @kernel
 def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, height, gain):
-    x, y, z, origin, twin = tin.x, tin.y, tin.z, tin.mesh.origin, tin.mesh.twin
-    n_channels = z.shape[1]
+    origin, twin = tin.mesh.origin, tin.mesh.twin
+    n_channels = tin.z.shape[1]
     trial, trial_error = np.empty(N_INSERTIONS, np.int64), np.empty(N_INSERTIONS)
     corner, share = np.empty(3, np.int32), np.empty(3)
     at, off, pull = np.empty(3), np.empty(n_channels), np.empty(n_channels)
@@ -207,7 +204,7 @@ def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, hei
         if origin[3 * face] < 0:
             continue
         n_trials = 0
-        for place in range(points.first[face], points.first[face] + points.count[face]):
+        for place in range(points.first[face], points.first[face] + points.n_points[face]):
             p = points.pool[place]
             errors_at(face, p, tin, points, at, off)
             squared = 0.0
@@ -247,7 +244,7 @@ def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, hei
                     errors_at(here, q, tin, points, own, own_off)
                 for k in range(3):
                     share[k] = 1.0 / own[k] if own[k] > ON_EDGE else np.inf
-                for place in range(points.first[here], points.first[here] + points.count[here]):
+                for place in range(points.first[here], points.first[here] + points.n_points[here]):
                     p = points.pool[place]
                     errors_at(here, p, tin, points, at, off)
                     weight = np.inf
@@ -281,7 +278,11 @@ def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, hei
 @inlined
 def errors_at(face, p, tin, points, at, off):
     x, y, z = tin.x, tin.y, tin.z
-    a, b, c = tin.mesh.origin[3 * face], tin.mesh.origin[3 * face + 1], tin.mesh.origin[3 * face + 2]
+    a, b, c = (
+        tin.mesh.origin[3 * face],
+        tin.mesh.origin[3 * face + 1],
+        tin.mesh.origin[3 * face + 2],
+    )
     bx, by, cx, cy = x[b] - x[a], y[b] - y[a], x[c] - x[a], y[c] - y[a]
     px, py = points.x[p] - x[a], points.y[p] - y[a]
     area = bx * cy - by * cx
@@ -363,7 +364,7 @@ def insert_vertices(
             here = face if half == 0 else second
             if here < 0:
                 continue
-            for place in range(points.first[here], points.first[here] + points.count[here]):
+            for place in range(points.first[here], points.first[here] + points.n_points[here]):
                 p = points.pool[place]
                 px, py = points.x[p] - x[v], points.y[p] - y[v]
                 near[n], side[n] = p, find_side(0, size, size, seen_x, seen_y, px, py)
@@ -371,9 +372,9 @@ def insert_vertices(
                 n += 1
         opening = base[row]
         for k in range(size):
-            points.first[slot[k]], points.count[slot[k]] = opening, cursor[k]
+            points.first[slot[k]], points.n_points[slot[k]] = opening, cursor[k]
             cursor[k] = opening
-            opening += points.count[slot[k]]
+            opening += points.n_points[slot[k]]
         for q in range(n):
             points.pool[cursor[side[q]]] = near[q]
             cursor[side[q]] += 1

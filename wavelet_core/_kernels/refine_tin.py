@@ -37,7 +37,7 @@ class Points(NamedTuple):
     """The input, and which of it lies in each face.
 
     x, y : (n_points,) float64, z : (n_points, c) float64
-    first : (n_faces,) int64, count : (n_faces,) int64, where in the pool the list of a face is
+    first, n_points : (n_faces,) int64, where in the pool the list of a face is, and how long
     pool : (capacity,) int32
     """
 
@@ -45,7 +45,7 @@ class Points(NamedTuple):
     y: NDArray[np.float64]
     z: NDArray[np.float64]
     first: NDArray[np.int64]
-    count: NDArray[np.int64]
+    n_points: NDArray[np.int64]
     pool: NDArray[np.int32]
 
 
@@ -85,11 +85,11 @@ def count_star_points(start, stop, chosen, tin, points, count):
             continue
         _, n_sides = walk_ring(v, tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing, ring, spoke)
         for k in range(n_sides):
-            count[row] += points.count[spoke[k] // 3]
+            count[row] += points.n_points[spoke[k] // 3]
 
 
-# error, squared, largest (n_faces,) float64, filled: what the errors in each face count for, the sum
-# of the squares of those in height, and the largest of these
+# error, squared_z, largest (n_faces,) float64, filled: what the errors in each face count for, the
+# sum of the squares of those in height, and the largest of these
 @kernel
 def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest):
     x, y, z, origin = tin.x, tin.y, tin.z, tin.mesh.origin
@@ -102,7 +102,7 @@ def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest):
         bx, by, cx, cy = x[b] - x[a], y[b] - y[a], x[c] - x[a], y[c] - y[a]
         per_area = 1.0 / (bx * cy - by * cx)
         total, total_z, most = 0.0, 0.0, 0.0
-        for k in range(points.first[face], points.first[face] + points.count[face]):
+        for k in range(points.first[face], points.first[face] + points.n_points[face]):
             p = points.pool[k]
             px, py = points.x[p] - x[a], points.y[p] - y[a]
             at_b = (px * cy - py * cx) * per_area
@@ -159,7 +159,7 @@ def colour_vertices(order, mesh, colour):
 @kernel
 def copy_lists(start, stop, points, first, pool):
     for face in range(start, stop):
-        for k in range(points.count[face]):
+        for k in range(points.n_points[face]):
             pool[first[face] + k] = points.pool[points.first[face] + k]
 
 

@@ -1,1 +1,1 @@
-"""Less error with as many vertices: places, edges and heights of a coarse TIN, improved in rounds."""
+"""Coarse TINs bettered in rounds: places, edges and heights, with as many vertices."""

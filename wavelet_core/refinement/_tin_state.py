@@ -131,9 +131,9 @@ class TinState:
         """Return a copy to go back to; lists in place are never written over."""
         twin = copy.copy(self)
         mesh = HalfEdges._make(array.copy() for array in self.tin.mesh)
-        twin.tin = Tin(mesh, *(array.copy() for array in self.tin[1:]))
+        twin.tin = Tin._make([mesh, *(array.copy() for array in self.tin[1:])])
         twin.points = self.points._replace(
-            first=self.points.first.copy(), count=self.points.count.copy()
+            first=self.points.first.copy(), n_points=self.points.n_points.copy()
         )
         twin._lives = self._lives.copy()
         return twin
@@ -160,7 +160,7 @@ class TinState:
 
     def listed_points(self, kept: IntArray) -> tuple[IntArray, IntArray]:
         """Return the points of the faces ``kept``, and in which of those each lies."""
-        count = self.points.count[kept]
+        count = self.points.n_points[kept]
         face = np.repeat(np.arange(len(kept)), count)
         ends = np.cumsum(count)
         place = np.arange(len(face)) + np.repeat(self.points.first[kept] - ends + count, count)
@@ -190,9 +190,7 @@ class TinState:
         )
         moves = to >= 0
         base = self._room_for(np.where(moves, counts, 0))
-        run_in_ranges(
-            move_vertices, n, chosen, to, shift, base, self.tin, self.points, capacity
-        )
+        run_in_ranges(move_vertices, n, chosen, to, shift, base, self.tin, self.points, capacity)
         return int(np.count_nonzero(moves))
 
     def _star_points(self, chosen: IndexArray) -> IntArray:
@@ -219,7 +217,7 @@ class TinState:
             if len(chosen) == 0:
                 break
             faces = np.column_stack([chosen // 3, mesh.twin[chosen] // 3])
-            base = self._room_for(self.points.count[faces].sum(axis=1))
+            base = self._room_for(self.points.n_points[faces].sum(axis=1))
             run_in_ranges(flip_edges, len(chosen), chosen, base, self.tin, self.points)
             n_flipped += len(chosen)
             around = (3 * faces.reshape(-1, 1) + np.arange(3)).ravel()
@@ -273,7 +271,7 @@ class TinState:
         outs, ins = outs[:n], ins[:n]
         vertex = spare.vertex[outs]
         freed = self._remove(vertex, spare.target[outs], spare.capacity)
-        self._insert(_Insertions(*(array[ins] for array in wanted)), vertex, freed)
+        self._insert(_Insertions._make(array[ins] for array in wanted), vertex, freed)
         return n
 
     def thin(self, budget: float = np.inf) -> int:
@@ -319,7 +317,7 @@ class TinState:
             gain,
         )  # fmt: skip
         found = np.flatnonzero(point >= 0)
-        return _Insertions(*(array[found] for array in (face, point, on_edge, height, gain)))
+        return _Insertions._make(array[found] for array in (face, point, on_edge, height, gain))
 
     def _remove(self, vertex: IndexArray, target: IndexArray, capacity: int) -> IndexArray:
         """Collapse vertices onto places of their rings; return the two faces that each frees."""
@@ -332,9 +330,9 @@ class TinState:
         return freed
 
     def _insert(self, new: _Insertions, vertex: IndexArray, free: IndexArray) -> None:
-        counts = self.points.count[new.face]
+        counts = self.points.n_points[new.face]
         split = new.on_edge >= 0
-        counts[split] += self.points.count[self.tin.mesh.twin[new.on_edge[split]] // 3]
+        counts[split] += self.points.n_points[self.tin.mesh.twin[new.on_edge[split]] // 3]
         base = self._room_for(counts)
         run_in_ranges(
             insert_vertices, len(vertex), new.face, new.on_edge, new.point, new.height, vertex,
@@ -347,7 +345,7 @@ class TinState:
         """Return where in the pool there is room for lists of such lengths."""
         total = int(counts.sum())
         if self._n_used + total > len(self.points.pool):
-            count = self.points.count
+            count = self.points.n_points
             first = np.cumsum(count) - count
             self._n_used = int(count.sum())
             pool = np.empty(ROOM * self._n_used + total, dtype=np.int32)

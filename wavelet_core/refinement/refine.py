@@ -247,10 +247,11 @@ class _Work:
         """Lower the error with as many vertices."""
         most = MAX_ROUNDS if n_rounds is None else n_rounds
         least = LEAST_GAIN if n_rounds is None else 0.0
+        settles = False  # the last round replaces nothing
         share = max(int(REPLACED_SHARE * self._state.n_vertices), 1)
         for number in range(most):
             before, state = self._error, self._state.snapshot()
-            is_last = number > 0 and number == most - 1
+            is_last = settles or (number > 0 and number == most - 1)
             n_replaced = 0
             if self._task.is_largest:
                 largest = self.rounds[-1].max_error * self._weights[0]
@@ -262,8 +263,9 @@ class _Work:
                 self._state, self._error = state, before
                 self.rounds.pop()
                 break
-            if self._lowered(before) <= least:
+            if is_last:
                 break
+            settles = self._lowered(before) <= least
 
     def thin(self, n_rounds: int | None) -> None:
         """Lower the number of vertices within a tolerance."""
@@ -272,7 +274,13 @@ class _Work:
         for number in range(most):
             before = self._state.n_vertices
             n_removed = self._thin() if number > 0 else 0
+            state = self._state.snapshot()
             self._improve(number, most, n_removed=n_removed)
+            if self._budget() < 0:  # as above
+                self._state = state
+                self.rounds.pop()
+                self._note(0, 0, 0, n_removed)
+                break
             if number > 0 and n_removed <= least * before:
                 break
 
@@ -280,13 +288,9 @@ class _Work:
         """Take out what the tolerance allows."""
         n_removed = 0
         for _ in range(THIN_PASSES):
-            budget, state = np.inf, None
-            if self._task.max_rms is not None:
-                squared = float(self._state.face_errors().squared_z.sum())
-                budget = self._task.max_rms**2 * self._n_points - squared
-                state = self._state.snapshot()
+            budget, state = self._budget(), self._state.snapshot()
             n_here = self._state.thin(budget) if budget > 0 else 0
-            if state is not None and self._is_too_far():
+            if self._budget() < 0:  # where other channels gained what z lost
                 self._state = state
                 break
             n_removed += n_here
@@ -294,9 +298,12 @@ class _Work:
                 break
         return n_removed
 
-    def _is_too_far(self) -> bool:
+    def _budget(self) -> float:
+        """Return what the sum of the squared errors of z may still grow by."""
+        if self._task.max_rms is None:
+            return np.inf
         squared = float(self._state.face_errors().squared_z.sum())
-        return squared > self._task.max_rms**2 * self._n_points
+        return self._task.max_rms**2 * self._n_points - squared
 
     def _improve(self, number: int, most: int, n_replaced: int = 0, n_removed: int = 0) -> None:
         """Turn edges, move vertices, turn edges; note what the TIN is like."""
