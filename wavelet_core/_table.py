@@ -56,6 +56,16 @@ class Table(dict[str, RowT]):
             )
         return row
 
+    def chosen(self, name: object) -> RowT:
+        """Return the row of a name, the first where it is None.
+
+        Raises
+        ------
+        OptionError
+            There is none of that name.
+        """
+        return next(iter(self.values())) if name is None else self.find(name)
+
     def look_up(self, name: object) -> RowT | None:
         """Return the row of a full or short name, in capitals or not; None where there is none."""
         if not isinstance(name, str):

@@ -204,7 +204,7 @@ class AnalysePointCloud(AnalysisAlgorithm):
             coordinate_system(crs),
             vertical_unit(request) or place.vertical_unit,
             fault=place.fault,
-            duplicates=request.text("DUPLICATES") or duplicate_rules()[0],
+            duplicates=request.text("DUPLICATES") or None,
             max_edge="auto" if max_edge == 0 else max_edge,
             concave=request.flag("CONCAVE"),
         )

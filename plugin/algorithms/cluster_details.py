@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import partial
-from typing import TYPE_CHECKING, Literal, cast
+from typing import TYPE_CHECKING
 
 from qgis.core import (
     QgsProcessingFeatureSource,
@@ -20,7 +20,7 @@ from qgis.core import (
 )
 
 from ..base import Values
-from ..parameters.choices import choice
+from ..parameters.choices import choice, clusterings
 from ..parameters.pyramid import crs_of
 from ..parameters.request import Request
 from ..ui import dependencies
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.learning.cluster import Labelled
 
-METHODS = ("kmeans", "mixture")
 TEACHERS = ("nobody: find clusters", "training areas", "classes of the LAS file")
 
 
@@ -102,7 +101,7 @@ class ClusterDetails(PyramidAlgorithm):
             tr("Empty for a number found from the data (2 to 10)."),
         )
         self.add(
-            choice("METHOD", tr("Method"), METHODS),
+            choice("METHOD", tr("Method"), clusterings()),
             tr("<i>kmeans</i>, or a <i>mixture</i> of Gaussians of different size and shape."),
             advanced=True,
         )
@@ -250,7 +249,7 @@ class ClusterDetails(PyramidAlgorithm):
         return cluster(
             geo,
             count=request.whole("COUNT"),
-            method=cast(Literal["kmeans", "mixture"], request.text("METHOD")),
+            method=request.text("METHOD"),
             channels=request.words("CHANNELS"),
             seed=request.whole("SEED") or 0,
             progress=request.progress(0.05, 0.8),

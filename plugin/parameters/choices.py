@@ -33,7 +33,16 @@ def duplicate_rules() -> tuple[str, ...]:
         return (DEFAULT,)
     from wavelet_gis.model.cloud_aside import DUPLICATE_RULES
 
-    return DUPLICATE_RULES
+    return tuple(DUPLICATE_RULES)
+
+
+def clusterings() -> tuple[str, ...]:
+    """Return the methods of clustering, the default first."""
+    if dependencies.missing(dependencies.ALWAYS):
+        return (DEFAULT,)
+    from wavelet_gis.workflows.learning.classify import CLUSTERINGS
+
+    return tuple(CLUSTERINGS)
 
 
 def choice(

@@ -1,8 +1,8 @@
 """Scale signatures: the spectra of the vertices as columns that can be clustered and learned from.
 
 Neighbouring levels hold nearly the same, since each removes only about a quarter of the vertices.
-They are joined into bands over which the number of vertices halves, so that the spacing grows by
-the square root of two.
+They are joined into wider bands (runs of levels) over which the number of vertices halves, so that
+the spacing grows by the square root of two.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Vertex-frequency analysis: what every input vertex holds in each band of scales.
 
-A level of a pyramid is a band: its details are what the surface loses when its spacing grows from
-that of level l + 1 to that of level l. Each detail belongs to one vertex and one band (section 3.3
-of the paper); the functions here carry the bands back to all input vertices, so that each of them
-has a whole spectrum.
+A band is a run of consecutive levels; here each is one level, the narrowest there is. Its details
+are what the surface loses when its spacing grows from that of level l + 1 to that of level l. Each
+detail belongs to one vertex and one band (section 3.3 of the paper); the functions here carry the
+bands back to all input vertices, so that each of them has a whole spectrum.
 """
 
 from __future__ import annotations

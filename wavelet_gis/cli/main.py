@@ -26,7 +26,7 @@ from wavelet_gis.cli.flags import flag_names
 from wavelet_gis.cli.streams import make_standard_streams_usable
 from wavelet_gis.cli.table_help import TableHelp
 
-__all__ = ["main"]
+__all__ = ["argument_parser", "main"]
 
 REFUSED = 1
 
@@ -52,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     make_standard_streams_usable()
     try:
-        chosen = _parser().parse_args(arguments)
+        chosen = argument_parser().parse_args(arguments)
     except SystemExit as stop:  # argparse has said why
         return stop.code if isinstance(stop.code, int) else 2
     console = Console(quiet=chosen.quiet, as_json=chosen.json, name_of=chosen.name_of)
@@ -140,7 +140,8 @@ def _complain(message: str) -> None:
     print(f"{PROGRAM}: error: {line}", file=sys.stderr)
 
 
-def _parser() -> argparse.ArgumentParser:
+def argument_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
         description="Terrain as a reversible wavelet pyramid of TINs.",

@@ -1,8 +1,9 @@
-"""Help texts that name the rows of a table of the core, which is imported when they are shown."""
+"""Help texts that name the rows of a table, which is imported when they are shown."""
 
 from __future__ import annotations
 
 import argparse
+from importlib import import_module
 
 __all__ = ["TableHelp", "names_from"]
 
@@ -14,20 +15,19 @@ class TableHelp(argparse.HelpFormatter):
         table = getattr(action, "table", None)
         if table is None or action.help is None:
             return action.help
-        import wavelet_core
-
-        rows = getattr(wavelet_core, table).values()
+        module, name = table.split(":")
+        rows = getattr(import_module(module), name).values()
         names = ", ".join(_both_names(row.name, getattr(row, "short", "")) for row in rows)
         return f"{action.help}: {names}".replace("%", "%%")
 
 
 def names_from(table: str, action: argparse.Action) -> None:
-    """Let the help of an argument list the rows of ``wavelet_core.<table>``.
+    """Let the help of an argument list the rows of a table.
 
     Parameters
     ----------
     table : str
-        ``PREDICTIONS``, ``PARTITIONS`` and the like.
+        Its module and name, such as ``wavelet_core:PREDICTIONS``.
     action : argparse.Action
         What ``add_argument`` returned.
     """

@@ -2,19 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core.errors import OptionError, PyramidError
+from wavelet_core._table import Table
+from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.triangulation import Merged, merge_duplicates
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
 
-__all__ = ["DUPLICATE_RULES", "Aside", "MergedHeights", "merged_points"]
+__all__ = ["DUPLICATE_RULES", "Aside", "DuplicateRule", "MergedHeights", "merged_points"]
 
-#: Which height the points of one place have in common.
-DUPLICATE_RULES = ("lowest", "highest", "mean", "first")
+
+class DuplicateRule(NamedTuple):
+    """Which height the points of one place have in common: a row of :data:`DUPLICATE_RULES`.
+
+    name : str, what `wavelet_gis.open` takes
+    help : str, one line for lists
+    kept : str, the rule of `wavelet_core.mesh.triangulation.merge_duplicates` for which of them
+        becomes the vertex, and has its attributes
+    height : callable, from the stored Z of all points and the vertex of each to the heights of all
+        vertices; None where that is the height of the point kept
+    """
+
+    name: str
+    help: str
+    kept: str
+    height: Callable[[NDArray[np.int32], NDArray[np.int64]], NDArray[np.int64]] | None = None
+
+
+def _mean(z: NDArray[np.int32], vertex: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the means of the stored numbers, rounded to stored numbers."""
+    sums = np.bincount(vertex, weights=z.astype(np.float64))
+    return np.rint(sums / np.bincount(vertex)).astype(np.int64)
+
+
+#: The rules for points that share x and y, the default first.
+DUPLICATE_RULES = Table(
+    "duplicates",
+    (
+        DuplicateRule("lowest", "that of the lowest point", "lowest"),
+        DuplicateRule("highest", "that of the highest point", "highest"),
+        DuplicateRule("mean", "their mean", "first", _mean),
+        DuplicateRule("first", "that of the first point in the file", "first"),
+    ),
+)
 
 
 class Aside(NamedTuple):
@@ -84,7 +118,7 @@ class MergedHeights(NamedTuple):
     """How far the points that share x and y with others are from the vertex that stands for them.
 
     rule : str
-        One of `DUPLICATE_RULES`.
+        The name of a row of `DUPLICATE_RULES`.
     n_points : int
         Points that have no vertex of their own.
     largest, rms : float
@@ -99,7 +133,7 @@ class MergedHeights(NamedTuple):
 
 
 def merged_points(
-    vertices: NDArray[np.float64], z: NDArray[np.int32], rule: str
+    vertices: NDArray[np.float64], z: NDArray[np.int32], rule: DuplicateRule
 ) -> tuple[Merged, NDArray[np.int64]]:
     """Return which points stand for those of their place, and the stored Z of each vertex.
 
@@ -109,24 +143,10 @@ def merged_points(
         In the working frame.
     z : (n_points,) int32
         As stored.
-    rule : str
-        One of `DUPLICATE_RULES`. A mean is that of the stored numbers, rounded to one; the
-        attributes are those of the first point.
-
-    Raises
-    ------
-    OptionError
-        There is no such rule.
+    rule : DuplicateRule
+        Which point stands for its place, and at which height.
     """
-    if rule not in DUPLICATE_RULES:
-        raise OptionError(
-            f"duplicates must be one of {', '.join(DUPLICATE_RULES)}, and is {rule!r}."
-        )
-    merged = merge_duplicates(vertices, "first" if rule == "mean" else rule)
-    stored = z[merged.kept].astype(np.int64)
-    if rule == "mean":
-        counts = np.bincount(merged.representative)
-        sums = np.bincount(merged.representative, weights=z.astype(np.float64))
-        is_shared = counts > 1
-        stored[is_shared] = np.rint(sums[is_shared] / counts[is_shared]).astype(np.int64)
-    return merged, stored
+    merged = merge_duplicates(vertices, rule.kept)
+    if rule.height is not None:
+        return merged, rule.height(z, merged.representative)
+    return merged, z[merged.kept].astype(np.int64)

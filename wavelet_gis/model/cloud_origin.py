@@ -17,7 +17,7 @@ from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.model.cloud import PointAttribute, PointCloud
-from wavelet_gis.model.cloud_aside import Aside, MergedHeights, merged_points
+from wavelet_gis.model.cloud_aside import DUPLICATE_RULES, Aside, MergedHeights, merged_points
 from wavelet_gis.model.exact_restore import (
     CORRECTIONS,
     ExactColumn,
@@ -439,7 +439,7 @@ def cloud_mesh(
     cloud: PointCloud,
     frame: LocalFrame,
     *,
-    duplicates: str = "lowest",
+    duplicates: str | None = None,
     max_edge: float | Literal["auto"] | None = None,
     concave: bool = False,
     name: str = "the cloud",
@@ -452,8 +452,10 @@ def cloud_mesh(
         In the file's coordinates.
     frame : LocalFrame
         From `wavelet_gis.crs.frame.working_frame`.
-    duplicates : {"lowest", "highest", "mean", "first"}
-        Which height points that share x and y have in common; all of them come back.
+    duplicates : str, optional
+        Which height points that share x and y have in common, a row of
+        `wavelet_gis.model.cloud_aside.DUPLICATE_RULES`, by default its first; all of them come
+        back.
     max_edge : float or "auto", optional
         Leave faces with a longer edge out, as gaps of the cloud; in the working frame's unit,
         which is that of x and y, or the metre for a geographic CRS. "auto" is
@@ -475,6 +477,7 @@ def cloud_mesh(
     PointCloudWarning
         How many points were merged and what that costs; gaps, and points without a face.
     """
+    rule = DUPLICATE_RULES.chosen(duplicates)
     used = slice(None) if cloud.aside is None else ~cloud.aside
     vertices = frame.to_local(cloud.coordinates()[used])
     if not np.isfinite(vertices).all():
@@ -482,9 +485,9 @@ def cloud_mesh(
             "the cloud has coordinates that are no finite numbers; check the scales and offsets "
             "in its header."
         )
-    merged, stored = merged_points(vertices, cloud.integers[used, 2], duplicates)
+    merged, stored = merged_points(vertices, cloud.integers[used, 2], rule)
     kept = merged.kept
-    origin = CloudOrigin.from_cloud(cloud, kept, merged.representative, stored, duplicates)
+    origin = CloudOrigin.from_cloud(cloud, kept, merged.representative, stored, rule.name)
     attributes = np.empty((len(kept), len(cloud.attributes)))
     for k, attribute in enumerate(cloud.attributes):
         attributes[:, k] = attribute.lifted()[used][kept]
@@ -496,7 +499,7 @@ def cloud_mesh(
             )
     names = tuple(attribute.name for attribute in cloud.attributes)
     vertices = vertices[kept]
-    if duplicates == "mean":
+    if rule.height is not None:
         vertices[:, 2] = frame.local_z(stored * cloud.scales[2] + cloud.offsets[2])
     faces = delaunay_faces(vertices[:, :2])
     gaps = gaps_of(vertices[:, :2], faces)

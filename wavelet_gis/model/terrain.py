@@ -155,7 +155,7 @@ def terrain_of_cloud(
     vertical_unit: str | None = None,
     *,
     fault: str = "",
-    duplicates: str = "lowest",
+    duplicates: str | None = None,
     max_edge: float | Literal["auto"] | None = None,
     concave: bool = False,
 ) -> Terrain:

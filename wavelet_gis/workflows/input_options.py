@@ -32,8 +32,6 @@ _MEANT_FOR = {
     "layer": (POINTS, TRIANGLES),
     "z_field": (POINTS,),
 }
-#: What an option is when nobody has given it; None or False where it is not named here.
-_DEFAULTS = {"duplicates": "lowest", "attributes": ()}
 
 
 def require_meaning(path: object, kind: str, options: Mapping[str, Any]) -> None:
@@ -77,4 +75,4 @@ def _is_given(name: str, value: Any) -> bool:
         return False
     if name == "attributes":
         return len(value) > 0
-    return bool(value != _DEFAULTS.get(name))
+    return True

@@ -62,7 +62,7 @@ def open_terrain(
     offline: bool = False,
     keep_noise: bool = False,
     keep_withheld: bool = False,
-    duplicates: str = "lowest",
+    duplicates: str | None = None,
     max_edge: float | Literal["auto"] | None = None,
     concave: bool = False,
 ) -> Terrain:

@@ -171,7 +171,7 @@ def test_what_cannot_be_clustered_or_learned_is_refused(halves):
     signature = energy_signature(halves.pyramid)
     with pytest.raises(OptionError, match="count is 0; give 1 to 254"):
         cluster_vertices(signature, 0)
-    with pytest.raises(OptionError, match="give kmeans or mixture"):
+    with pytest.raises(OptionError, match="give one of kmeans, mixture"):
         cluster_vertices(signature, 2, "ward")
     one = np.zeros(4800, dtype=np.int64)
     with pytest.raises(OptionError, match="at least two"):

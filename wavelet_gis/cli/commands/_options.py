@@ -88,11 +88,13 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--keep-withheld", action="store_true", help="the same for points with the withheld flag"
     )
-    group.add_argument(
-        "--duplicates",
-        choices=("lowest", "highest", "mean", "first"),
-        default="lowest",
-        help="which height points that share x and y have in common (lowest)",
+    names_from(
+        "wavelet_gis.model.cloud_aside:DUPLICATE_RULES",
+        group.add_argument(
+            "--duplicates",
+            metavar="RULE",
+            help="which height points that share x and y have in common, by default the first of",
+        ),
     )
     group.add_argument(
         "--max-edge",
@@ -159,7 +161,7 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         ("PREDICTIONS", "--prediction", "how removed vertices are predicted"),
         ("UPDATES", "--update", "how details are passed on to the vertices kept"),
     ):
-        names_from(table, group.add_argument(flag, metavar="NAME", help=help_))
+        names_from(f"wavelet_core:{table}", group.add_argument(flag, metavar="NAME", help=help_))
     group.add_argument(
         "--signal", metavar="z|xyz", help="lift elevation and attributes, or x and y too"
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from wavelet_gis.cli.commands._options import add_overwrite_argument, names
 from wavelet_gis.cli.console import Console
+from wavelet_gis.cli.table_help import names_from
 
 if TYPE_CHECKING:
     from wavelet_gis.workflows.analyse import Analysis
@@ -26,11 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     clusters.add_argument(
         "--count", type=int, metavar="N", help="of clusters; by default found from the data"
     )
-    clusters.add_argument(
-        "--method",
-        choices=("kmeans", "mixture"),
-        default="kmeans",
-        help="k-means (default) or a mixture of Gaussians",
+    names_from(
+        "wavelet_gis.workflows.learning.classify:CLUSTERINGS",
+        clusters.add_argument("--method", metavar="NAME", help="by default the first of"),
     )
     clusters.add_argument(
         "--channels",

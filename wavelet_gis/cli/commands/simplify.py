@@ -20,6 +20,7 @@ from wavelet_gis.cli.commands._options import (
     wavelet_options,
 )
 from wavelet_gis.cli.console import Console
+from wavelet_gis.cli.table_help import names_from
 
 if TYPE_CHECKING:
     from wavelet_gis.workflows.simplify import Simplified
@@ -50,10 +51,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="R",
         help="the same for the root mean square error",
     )
-    parser.add_argument(
-        "--norm",
-        choices=("rms", "max"),
-        help="keep the mean square or the largest error small; max with --max-error, else rms",
+    names_from(
+        "wavelet_core:NORMS",
+        parser.add_argument(
+            "--norm",
+            metavar="NAME",
+            help="which error to keep small, by default the largest with --max-error, else the "
+            "mean square",
+        ),
     )
     parser.add_argument(
         "--no-fit",

@@ -9,11 +9,12 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core._table import Table
 from wavelet_core.errors import MissingDependencyError, OptionError
 from wavelet_core.features.signature import Signature
 from wavelet_core.lifting.spacings import level_spacings
@@ -22,8 +23,10 @@ from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.vertex_tables import energy_columns
 
 __all__ = [
+    "CLUSTERINGS",
     "NOT_KNOWN",
     "Classes",
+    "Clustering",
     "Clusters",
     "Validation",
     "cluster_summary",
@@ -157,7 +160,7 @@ class Validation:
 def cluster_vertices(
     signature: Signature,
     count: int | None = None,
-    method: Literal["kmeans", "mixture"] = "kmeans",
+    method: str | None = None,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Clusters:
@@ -169,9 +172,8 @@ def cluster_vertices(
         From `wavelet_core.features.signature.energy_signature`.
     count : int, optional
         Number of clusters; by default the knee of the variance that 1 to 10 clusters explain.
-    method : {"kmeans", "mixture"}
-        k-means on columns of unit variance, or a mixture of Gaussians, whose clusters may differ
-        in size and shape.
+    method : str, optional
+        A row of `CLUSTERINGS`, by default its first. Columns have unit variance.
     seed : int
         Of the sample that is fitted and of the starts; the same seed gives the same clusters.
     progress : callable, optional
@@ -191,8 +193,7 @@ def cluster_vertices(
     is a continuum, and measures of separation (the mean silhouette) chose two clusters, rough and
     smooth, on all of three DEMs that were tried.
     """
-    if method not in _METHODS:
-        raise OptionError(f"method is {method!r}; give {' or '.join(_METHODS)}.")
+    row = CLUSTERINGS.chosen(method)
     n_vertices = len(signature.values)
     if count is not None and not 1 <= count <= min(n_vertices, 254):
         raise OptionError(
@@ -210,10 +211,9 @@ def cluster_vertices(
             explained = _explained(fitted, seed, part_of(progress, 0.0, 0.7))
             count = _knee(explained)
         report(progress, 0.7)
-        fit, assign = _METHODS[method]
-        model = fit(fitted, count, seed)
+        model = row.fit(fitted, count, seed)
         parts = [
-            assign(model, columns[rows])
+            row.assign(model, columns[rows])
             for rows in _blocks(n_vertices, part_of(progress, 0.8, 1.0))
         ]
     labels, confidence = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -466,11 +466,32 @@ def _nearest_centre(model: Any, columns: FloatArray) -> tuple[IntArray, FloatArr
     return labels, 1 - nearest[:, 0] / np.maximum(nearest[:, 1], 1e-300)
 
 
-#: By the method of clustering: how a model is fitted, and how vertices are assigned by it.
-_METHODS: dict[str, tuple[Callable[..., Any], Callable[..., tuple[IntArray, FloatArray]]]] = {
-    "kmeans": (_fitted_kmeans, _nearest_centre),
-    "mixture": (_fitted_mixture, _most_likely),
-}
+class Clustering(NamedTuple):
+    """One way to find clusters: a row of :data:`CLUSTERINGS`.
+
+    name : str, what `cluster_vertices` takes
+    help : str, one line for lists
+    fit : callable, from columns, a number of clusters and a seed to a model
+    assign : callable, from a model and columns to the cluster of each row, and how clearly
+    """
+
+    name: str
+    help: str
+    fit: Callable[[FloatArray, int, int], Any]
+    assign: Callable[[Any, FloatArray], tuple[IntArray, FloatArray]]
+
+
+#: The methods of clustering, the default first.
+CLUSTERINGS = Table(
+    "method",
+    (
+        Clustering("kmeans", "the nearest of k means", _fitted_kmeans, _nearest_centre),
+        Clustering(
+            "mixture", "a mixture of Gaussians, which may differ in size and shape",
+            _fitted_mixture, _most_likely,
+        ),
+    ),
+)  # fmt: skip
 
 
 def _fitted_trees(

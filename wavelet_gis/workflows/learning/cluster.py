@@ -27,6 +27,7 @@ from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.vertex_raster import Bands, label_band
 from wavelet_gis.progress import part_of
 from wavelet_gis.workflows.learning.classify import (
+    CLUSTERINGS,
     Validation,
     cluster_summary,
     cluster_vertices,
@@ -152,7 +153,7 @@ def cluster(
     data: HoldsPyramid | GeoPyramid,
     *,
     count: int | None = None,
-    method: Literal["kmeans", "mixture"] = "kmeans",
+    method: str | None = None,
     channels: Sequence[str] = (),
     seed: int = 0,
     progress: Progress | None = None,
@@ -165,8 +166,8 @@ def cluster(
         The pyramid.
     count : int, optional
         Number of clusters; by default found from the data.
-    method : {"kmeans", "mixture"}
-        See `wavelet_gis.workflows.learning.classify.cluster_vertices`.
+    method : str, optional
+        A row of `wavelet_gis.workflows.learning.classify.CLUSTERINGS`, by default its first.
     channels : sequence of str
         Channels whose scales count; by default the geometry.
     seed : int
@@ -183,7 +184,7 @@ def cluster(
     signature = energy_signature(geo.pyramid, tuple(channels), part_of(progress, 0.0, 0.5))
     clusters = cluster_vertices(signature, count, method, seed, part_of(progress, 0.5, 1.0))
     found = {
-        "method": method,
+        "method": CLUSTERINGS.chosen(method).name,
         "n_clusters": clusters.n_clusters,
         "explained": clusters.explained,
     }
