@@ -89,10 +89,27 @@ class SimplifyDem(DemInput):
         self.add(
             QgsProcessingParameterBoolean("FIT", tr("Fit the heights to all cells"), True),
             tr(
-                "Least squares: the smallest RMSE that these triangles can have. Without it, and "
-                "where the largest error is kept small, the heights are those of the pyramid's "
-                "coarsest level."
+                "Least squares: the smallest RMSE that these triangles can have. Without it the "
+                "TIN is the pyramid's coarsest level as it is; where the largest error is kept "
+                "small, heights are those of the cells."
             ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "REFINE", tr("Rounds of refinement"), WHOLE_NUMBER, None, True, 0
+            ),
+            tr(
+                "Each moves, replaces and reconnects vertices for a smaller error, or for fewer "
+                "vertices within a tolerance. Empty for as many as pay, 0 for none."
+            ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterBoolean(
+                "KEEP_POINTS", tr("Vertices are cells of the DEM"), False
+            ),
+            tr("Height and all, also where the RMSE counts: heights are not fitted."),
             advanced=True,
         )
         self.add(
@@ -128,7 +145,7 @@ class SimplifyDem(DemInput):
                 optional=True,
                 createByDefault=False,
             ),
-            tr("The reversible pyramid whose coarsest level has the triangles of the TIN."),
+            tr("The reversible pyramid whose coarsest level the TIN was made from."),
             advanced=True,
         )
         self.addOutput(QgsProcessingOutputNumber("N_VERTICES", tr("Number of vertices")))
@@ -156,7 +173,7 @@ class SimplifyDem(DemInput):
         terrain = self.terrain(request)
         stages = {
             "simplify": tr("Simplifying (the first run also compiles, up to half a minute)"),
-            "fit": tr("Fitting the heights"),
+            "fit": tr("Refining the TIN"),
             "errors": tr("Measuring the errors"),
         }
         simplified = simplify(
@@ -165,6 +182,8 @@ class SimplifyDem(DemInput):
             max_error=request.number("MAX_ERROR"),
             max_rms=request.number("RMSE"),
             fit=request.flag("FIT"),
+            refine=request.whole("REFINE"),
+            keep_points=request.flag("KEEP_POINTS"),
             progress=request.progress(0.05, 0.7),
             on_stage=lambda name: request.stage(stages[name]),
             **design_options(request),

@@ -1180,12 +1180,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fit the heights to all cells</source>
+    <source>Each moves, replaces and reconnects vertices for a smaller error, or for fewer vertices within a tolerance. Empty for as many as pay, 0 for none.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fitting the heights</source>
+    <source>Fit the heights to all cells</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1200,12 +1200,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Height and all, also where the RMSE counts: heights are not fitted.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>In the unit of the CRS; empty for the grid of the DEM.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
+    <source>Least squares: the smallest RMSE that these triangles can have. Without it the TIN is the pyramid's coarsest level as it is; where the largest error is kept small, heights are those of the cells.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1245,7 +1250,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Refining the TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Root mean square error over all cells, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Rounds of refinement</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1275,7 +1290,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>The reversible pyramid whose coarsest level has the triangles of the TIN.</source>
+    <source>The reversible pyramid whose coarsest level the TIN was made from.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Vertices are cells of the DEM</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

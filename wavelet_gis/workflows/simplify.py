@@ -139,6 +139,8 @@ def simplify(
     require_terrain(terrain)
     if sum(rule is not None for rule in (vertices, max_error, max_rms)) != 1:
         raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
+    if refine is not None and refine < 0:
+        raise OptionError("{0} is {given}; give 0 or more rounds.", "refine", given=refine)
     if refine and not (fit or keep_points):
         raise OptionError(
             "{0} moves vertices, whose heights cannot stay those of the level; leave out {0} or "
