@@ -57,9 +57,7 @@ lint: $(BIN)/.installed-dev
 	$(BIN)/python -m numpydoc.hooks.validate_docstrings $$(git ls-files 'wavelet_core/*.py' 'wavelet_gis/*.py')
 
 plugin:
-	@mkdir -p dist
-	git archive --format=zip --prefix=terrain_wavelets/ --output=dist/terrain_wavelets.zip HEAD
-	@echo dist/terrain_wavelets.zip
+	@$(PYTHON) scripts/plugin_zip.py
 
 clean:
 	rm -rf build dist demo_output *.egg-info .pytest_cache .hypothesis .ruff_cache .mypy_cache

@@ -4,7 +4,15 @@ import math
 
 import numpy as np
 from osgeo import gdal, osr
-from qgis.core import QgsFeature, QgsGeometry, QgsPoint, QgsProcessingFeedback, QgsVectorLayer
+from qgis.core import (
+    QgsCoordinateTransformContext,
+    QgsFeature,
+    QgsGeometry,
+    QgsPoint,
+    QgsProcessingFeedback,
+    QgsVectorFileWriter,
+    QgsVectorLayer,
+)
 
 gdal.DontUseExceptions()
 osr.DontUseExceptions()
@@ -107,6 +115,17 @@ def point_layer(xyz, crs="EPSG:2154", fields=(), rows=()):
         features.append(feature)
     layer.dataProvider().addFeatures(features)
     return layer
+
+
+def write_points(path, xyz, epsg=2154):
+    """Write points with Z as a GeoPackage."""
+    layer = point_layer(xyz, f"EPSG:{epsg}")
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    written = QgsVectorFileWriter.writeAsVectorFormatV3(
+        layer, str(path), QgsCoordinateTransformContext(), options
+    )
+    assert written[0] == QgsVectorFileWriter.WriterError.NoError, written
+    return str(path)
 
 
 def wkt_layer(geometry_type, wkts, crs="EPSG:2154"):

@@ -67,7 +67,7 @@ DOORS = {
 }
 #: Which other packages may be imported anywhere, and which inside a function only.
 ALLOWED_IN_CORE = {"numpy", "scipy", "numba"}
-ALLOWED_LAZILY_IN_CORE = {"pythoncdt"}
+ALLOWED_LAZILY_IN_CORE = {"pythoncdt", "shapely"}
 #: Only the plugin lives inside QGIS, and there rasters and vectors go through QGIS.
 QGIS_PACKAGES = {"qgis", "osgeo", "processing", "PyQt5", "PyQt6", "sip"}
 REFUSED_IN_PLUGIN = {"rasterio", "pyogrio", "fiona", "geopandas"}

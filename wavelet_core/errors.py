@@ -121,7 +121,7 @@ class WaveletWarning(UserWarning):
 
 
 class SlowFallbackWarning(WaveletWarning):
-    """Numba is absent, so the work takes some ten times longer, with the same result."""
+    """Numba is absent, so the work takes two to seven times as long, with the same result."""
 
 
 class UnstableDesignWarning(WaveletWarning):

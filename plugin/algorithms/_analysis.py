@@ -21,7 +21,10 @@ from ..ui.translation import tr
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.model.terrain import Terrain
+    from wavelet_gis.workflows.analyse import Analysis
     from wavelet_gis.workflows.options import WaveletOptions
+
+    from ..qgis_io.patience import Work
 
 
 class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
@@ -74,13 +77,19 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
             **design_options(request),
             **self.more_options(request, terrain),
         }
-        analysis = analyse(
-            terrain,
-            progress=request.progress(0.05, 0.75),
-            on_stage=lambda name: request.stage(stages[name]),
-            **stop_rules(request),
-            **options,
-        )
+        rules = stop_rules(request)
+
+        def compute(work: Work) -> Analysis:
+            tell = work.teller(request.stage)
+            return analyse(
+                terrain,
+                progress=work.progress,
+                on_stage=lambda name: tell(stages[name]),
+                **rules,
+                **options,
+            )
+
+        analysis = request.computed(compute, 0.15, 0.75)
         geo = analysis.geo
         log_levels(request, geo)
         save(request, geo, output, 0.75, 0.95)

@@ -54,9 +54,8 @@ class DemInput(TerrainWaveletsAlgorithm):
         from ..qgis_io.raster_reader import read_dem
 
         request.stage(tr("Reading the DEM"))
-        return terrain_of_dem(
-            self.raster.name,
-            read_dem(self.raster, request.feedback),
-            coordinate_system(self.raster.crs),
-            vertical_unit(request) or self.raster.vertical_unit(),
+        dem, system = read_dem(self.raster, request.feedback), coordinate_system(self.raster.crs)
+        unit = vertical_unit(request) or self.raster.vertical_unit()
+        return request.computed(
+            lambda work: terrain_of_dem(self.raster.name, dem, system, unit), 0.0, 0.05
         )

@@ -40,7 +40,8 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
 
         request.stage(tr("Reading the pyramid"))
         # A layer of the file may have been handed on by a model: 'file.gpkg|layername=coarse_tin'.
-        geo = load(request.input_file("INPUT")).geo
+        path = request.input_file("INPUT")
+        geo = request.computed(lambda work: load(path).geo, 0.0, 0.05)
         for line in geo.history:
             request.say(tr("Changed since its analysis: {}").format(line))
         return geo

@@ -30,8 +30,12 @@ from ..ui.translation import tr
 from ._analysis import AnalysisAlgorithm
 
 if TYPE_CHECKING:
+    from wavelet_gis.crs.frame import Georeference
+    from wavelet_gis.model.cloud import PointCloud
     from wavelet_gis.model.terrain import Terrain
     from wavelet_gis.workflows.options import WaveletOptions
+
+    from ..qgis_io.patience import Work
 
 #: Dimensions that are offered by name; any other can be written in.
 ATTRIBUTES = ("classification", "hag", "intensity", "rgb", "return_number", "number_of_returns")
@@ -181,14 +185,21 @@ class AnalysePointCloud(AnalysisAlgorithm):
 
         path = request.input_file("INPUT")
         request.stage(tr("Reading the points"))
-        cloud, place = read_cloud(
-            path,
-            attributes=[*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")],
-            classes=request.whole_numbers("CLASSES") or None,
-            carry=request.flag("CARRY"),
-            keep_noise=request.flag("KEEP_NOISE"),
-            keep_withheld=request.flag("KEEP_WITHHELD"),
-        )
+        attributes = [*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")]
+        classes, carry = request.whole_numbers("CLASSES") or None, request.flag("CARRY")
+        keep_noise, keep_withheld = request.flag("KEEP_NOISE"), request.flag("KEEP_WITHHELD")
+
+        def read(work: Work) -> tuple[PointCloud, Georeference]:
+            return read_cloud(
+                path,
+                attributes=attributes,
+                classes=classes,
+                carry=carry,
+                keep_noise=keep_noise,
+                keep_withheld=keep_withheld,
+            )
+
+        cloud, place = request.computed(read, 0.0, 0.05)
         crs = request.crs("CRS")
         if not crs.isValid() and place.wkt:
             crs = QgsCoordinateReferenceSystem.fromWkt(place.wkt)
@@ -198,16 +209,23 @@ class AnalysePointCloud(AnalysisAlgorithm):
                 )
         max_edge = request.number("MAX_EDGE")
         request.stage(tr("Triangulating {} points").format(cloud.n_points))
-        return terrain_of_cloud(
-            path,
-            cloud,
-            coordinate_system(crs),
-            vertical_unit(request) or place.vertical_unit,
-            fault=place.fault,
-            duplicates=request.text("DUPLICATES") or None,
-            max_edge="auto" if max_edge == 0 else max_edge,
-            concave=request.flag("CONCAVE"),
-        )
+        system, unit = coordinate_system(crs), vertical_unit(request) or place.vertical_unit
+        duplicates = request.text("DUPLICATES") or None
+        concave = request.flag("CONCAVE")
+
+        def triangulate(work: Work) -> Terrain:
+            return terrain_of_cloud(
+                path,
+                cloud,
+                system,
+                unit,
+                fault=place.fault,
+                duplicates=duplicates,
+                max_edge="auto" if max_edge == 0 else max_edge,
+                concave=concave,
+            )
+
+        return request.computed(triangulate, 0.05, 0.15)
 
     def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:
         """Return the weights of the attributes."""

@@ -23,7 +23,6 @@ from ..parameters.analysis_options import (
     weights_refusal,
 )
 from ..parameters.request import Request
-from ..ui import dependencies
 from ..ui.enums import (
     ANY_FIELD,
     LINES,
@@ -44,7 +43,10 @@ if TYPE_CHECKING:
     from wavelet_gis.crs.frame import CoordinateSystem
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.model.terrain import Terrain
+    from wavelet_gis.model.tin import ConstrainedTin
     from wavelet_gis.workflows.options import WaveletOptions
+
+    from ..qgis_io.patience import Work
 
 
 class AnalyseTin(AnalysisAlgorithm):
@@ -190,11 +192,6 @@ class AnalyseTin(AnalysisAlgorithm):
         """Refuse weights that are no numbers."""
         return weights_refusal(request)
 
-    def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
-        """Return what edges that are given need; without them SciPy triangulates."""
-        has_edges = request.has("BREAKLINES") or request.has("CLIP")
-        return (dependencies.PYTHONCDT,) if has_edges else ()
-
     def take_layers(self, request: Request) -> None:
         """Take the sources, in the thread that the layers live in."""
         source = request.source("INPUT")
@@ -226,7 +223,10 @@ class AnalyseTin(AnalysisAlgorithm):
 
         if self.profile is None or len(self.profile) == 0:
             return {}
-        errors = measured(geo.pyramid.mesh(0), self.profile, geo.frame.z_scale)
+        profile = self.profile
+        errors = request.computed(
+            lambda work: measured(geo.pyramid.mesh(0), profile, geo.frame.z_scale), 0.95, 1.0
+        )
         request.say(
             tr("Along breaklines and outline: RMSE {:.4g}, largest error {:.4g}").format(
                 errors.rmse, errors.max_error
@@ -248,8 +248,9 @@ class AnalyseTin(AnalysisAlgorithm):
             )
         request.stage(tr("Reading the triangles"))
         corners = read_triangles(self.source, request.feedback)
-        return terrain_of_triangles(
-            self.source.sourceName(), corners, system, vertical_unit(request)
+        name, unit = self.source.sourceName(), vertical_unit(request)
+        return request.computed(
+            lambda work: terrain_of_triangles(name, corners, system, unit), 0.05, 0.15
         )
 
     def _terrain_of_points(self, request: Request, system: CoordinateSystem) -> Terrain:
@@ -298,10 +299,10 @@ class AnalyseTin(AnalysisAlgorithm):
         if breaklines or outline:
             request.stage(tr("Laying lines on the terrain"))
             tolerance = _first_of(request, "LINE_TOLERANCE", "MAX_ERROR")
-            draped = drape(
-                [*breaklines, *outline],
-                TriangleMesh.from_points(local),
-                default_tolerance(local) if tolerance is None else tolerance * frame.z_scale,
+            lines = [*breaklines, *outline]
+            within = default_tolerance(local) if tolerance is None else tolerance * frame.z_scale
+            draped = request.computed(
+                lambda work: drape(lines, TriangleMesh.from_points(local), within), 0.05, 0.1
             )
             self.profile = draped.profile
             breaklines, outline = (
@@ -314,15 +315,18 @@ class AnalyseTin(AnalysisAlgorithm):
             x, y = positions.T
             return constraints.contains(np.column_stack([frame.file_x(x), frame.file_y(y)]))
 
-        tin = tin_with_lines(
-            local[inside],
-            points.attributes[inside],
-            attribute_names,
-            breaklines=breaklines,
-            outline=outline,
-            contains=contains,
-            is_marked=points.is_marked[inside],
-        )
+        def triangulate(work: Work) -> ConstrainedTin:
+            return tin_with_lines(
+                local[inside],
+                points.attributes[inside],
+                attribute_names,
+                breaklines=breaklines,
+                outline=outline,
+                contains=contains,
+                is_marked=points.is_marked[inside],
+            )
+
+        tin = request.computed(triangulate, 0.1, 0.15)
         self.locked = tin.is_marked
         if request.flag("LOCK_BREAKLINES"):
             self.locked = tin.is_marked | tin.is_on_line | tin.is_on_outline

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.learning.cluster import Labelled
 
+    from ..qgis_io.patience import Work
+
 TEACHERS = ("nobody: find clusters", "training areas", "classes of the LAS file")
 
 
@@ -246,29 +248,43 @@ class ClusterDetails(PyramidAlgorithm):
         from wavelet_gis.workflows.learning.cluster import cluster
 
         request.stage(tr("Gathering the spectrum of each vertex, and clustering"))
-        return cluster(
-            geo,
-            count=request.whole("COUNT"),
-            method=request.text("METHOD"),
-            channels=request.words("CHANNELS"),
-            seed=request.whole("SEED") or 0,
-            progress=request.progress(0.05, 0.8),
-        )
+        count, seed = request.whole("COUNT"), request.whole("SEED") or 0
+        method = request.text("METHOD")
+        channels = request.words("CHANNELS")
+
+        def compute(work: Work) -> Labelled:
+            return cluster(
+                geo,
+                count=count,
+                method=method,
+                channels=channels,
+                seed=seed,
+                progress=work.progress,
+            )
+
+        return request.computed(compute, 0.05, 0.8)
 
     def _classes(self, request: Request, geo: GeoPyramid) -> Labelled:
         from wavelet_gis.workflows.learning.cluster import classify
 
         given = self._given(request, geo)
         request.stage(tr("Gathering the spectrum of each vertex, and learning the classes"))
-        return classify(
-            geo,
-            given,
-            is_las=_teacher(request) == TEACHERS[2],
-            unlabelled=request.whole_numbers("UNLABELLED"),
-            validate=request.flag("VALIDATE"),
-            seed=request.whole("SEED") or 0,
-            progress=request.progress(0.05, 0.8),
-        )
+        is_las = _teacher(request) == TEACHERS[2]
+        unlabelled, seed = request.whole_numbers("UNLABELLED"), request.whole("SEED") or 0
+        validate = request.flag("VALIDATE")
+
+        def compute(work: Work) -> Labelled:
+            return classify(
+                geo,
+                given,
+                is_las=is_las,
+                unlabelled=unlabelled,
+                validate=validate,
+                seed=seed,
+                progress=work.progress,
+            )
+
+        return request.computed(compute, 0.05, 0.8)
 
     def _given(self, request: Request, geo: GeoPyramid) -> NDArray[np.int64]:
         """Return the classes that are known, below 0 where they are not."""
@@ -282,7 +298,9 @@ class ClusterDetails(PyramidAlgorithm):
         given = labels_inside(
             self.training,
             request.text("CLASS_FIELD"),
-            geo.frame.to_file(geo.pyramid.synthesise().vertices),
+            request.computed(
+                lambda work: geo.frame.to_file(geo.pyramid.synthesise().vertices), 0.05, 0.05
+            ),
             crs_of(geo),
             request.transforms,
             request.feedback,
@@ -302,14 +320,15 @@ def _written(request: Request, labelled: Labelled) -> Values:
     results: Values = {}
     path = request.output_layer("RASTER")
     if path:
-        bands = labelled.raster(request.size("CELL_SIZE"))
-        write_bands(path, bands, crs_of(labelled.geo), request.feedback)
+        cell_size = request.size("CELL_SIZE")
+        bands = request.computed(lambda work: labelled.raster(cell_size), 0.8, 0.9)
+        report = request.progress(0.9, 0.95)
+        write_bands(path, bands, crs_of(labelled.geo), request.feedback, report)
         request.finish("RASTER", path, partial(styles.style_labels, name=labelled.name))
         results["RASTER"] = path
     if request.wants("OUTPUT"):
-        results["OUTPUT"] = tin_output.write_layer(
-            request, "OUTPUT", labelled.geo, labelled.layer()
-        )
+        layer = request.computed(lambda work: labelled.layer(), 0.8, 0.85)
+        results["OUTPUT"] = tin_output.write_layer(request, "OUTPUT", labelled.geo, layer)
     return results
 
 

@@ -150,9 +150,13 @@ class DetailLayers(PyramidAlgorithm):
                 continue
             magnitude = layer.fields["magnitude"]
             rows = np.flatnonzero(magnitude >= smallest)
-            n_details += vectors.add_layer(sink, layer, request.feedback, rows)
+            n_levels = last - first + 1
+            report = request.progress(
+                0.05 + 0.55 * (level - first) / n_levels,
+                0.05 + 0.55 * (level - first + 1) / n_levels,
+            )
+            n_details += vectors.add_layer(sink, layer, request.feedback, rows, report)
             largest = max(largest, float(magnitude.max(initial=0.0)))
-            request.progress(0.0, 0.6)((level - first + 1) / (last - first + 1))
         request.finish("OUTPUT", destination, styles.style_details)
         results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
         if request.wants("ENERGY"):
@@ -185,9 +189,10 @@ def _write_energy(request: Request, geo: GeoPyramid) -> str:
 
     path = request.output_layer("ENERGY")
     request.stage(tr("Gathering the energy of each level"))
-    bands = details(geo, what="energy").raster(
-        request.size("CELL_SIZE"), request.progress(0.6, 0.9)
+    cell_size = request.size("CELL_SIZE")
+    bands = request.computed(
+        lambda work: details(geo, what="energy").raster(cell_size, work.progress), 0.6, 0.9
     )
-    write_bands(path, bands, crs_of(geo), request.feedback)
+    write_bands(path, bands, crs_of(geo), request.feedback, request.progress(0.9, 1.0))
     request.finish("ENERGY", path, styles.style_energy)
     return path

@@ -141,17 +141,15 @@ class ExtractLevel(PyramidAlgorithm):
 
         geo = self.geo_pyramid(request)
         log_levels(request, geo)
-        request.progress()(0.3)
         request.stage(tr("Synthesising the surface"))
         vertices, max_error = request.whole("VERTICES_WANTED"), request.number("MAX_ERROR")
         is_level = vertices is None and max_error is None
-        surface = extract(
-            geo,
-            level=checked_level(geo, request.whole("LEVEL") or 0) if is_level else None,
-            vertices=vertices,
-            max_error=max_error,
+        level = checked_level(geo, request.whole("LEVEL") or 0) if is_level else None
+        surface = request.computed(
+            lambda work: extract(geo, level=level, vertices=vertices, max_error=max_error),
+            0.05,
+            0.6,
         )
-        request.progress()(0.6)
         results = write_surface(request, surface)
         if not results:
             raise QgsProcessingException(

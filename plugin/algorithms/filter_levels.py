@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.filtering import Filtered
 
+    from ..qgis_io.patience import Work
     from ..ui.dependencies import Package
 
 
@@ -207,12 +208,15 @@ class FilterLevels(PyramidAlgorithm):
             (
                 "SMALLEST_SIZE",
                 tr("Smallest size kept"),
-                tr("Drop details that are smaller on the ground, in metres."),
+                tr(
+                    "Drop details that are smaller on the ground, in the unit of x and y, or "
+                    "metres for a geographic CRS. The pyramid may be of any kind."
+                ),
             ),
             (
                 "LARGEST_SIZE",
                 tr("Largest size kept"),
-                tr("Drop details that are larger on the ground, in metres."),
+                tr("Drop details that are larger on the ground, in the same unit."),
             ),
         ):
             self.add(
@@ -258,34 +262,51 @@ class FilterLevels(PyramidAlgorithm):
         before = self.geo_pyramid(request)
         sigma = request.number("SIGMA_OF_NOISE")
         request.stage(tr("Filtering"))
-        filtered = filter_pyramid(
-            before,
-            gains=_gains(request),
-            levels=_levels(request, before),
-            metres=_sizes(request),
-            drop_coarse=request.flag("DROP_COARSE"),
-            denoise=request.flag("DENOISE") and (True if sigma is None else sigma),
-            n_pyramids=request.whole("PYRAMIDS") or 0,
-            channels=request.words("CHANNELS") or ["z"],
-            noise_range=_range(request),
-            local_noise=request.flag("LOCAL_NOISE"),
-            outliers=request.flag("OUTLIERS"),
-            progress=request.progress(0.05, 0.7),
-        )
+        gains, levels = _gains(request), _levels(request, before)
+        sizes, metre = _sizes(request), before.system.horizontal_unit
+        if before.system.kind == "geographic":
+            metre = 1.0
+        metres = None if sizes is None else (sizes[0] * metre, sizes[1] * metre)
+        drop_coarse, denoise = request.flag("DROP_COARSE"), request.flag("DENOISE")
+        n_pyramids = request.whole("PYRAMIDS") or 0
+        channels, noise_range = request.words("CHANNELS") or ["z"], _range(request)
+        local_noise, outliers = request.flag("LOCAL_NOISE"), request.flag("OUTLIERS")
+
+        def compute(work: Work) -> Filtered:
+            return filter_pyramid(
+                before,
+                gains=gains,
+                levels=levels,
+                metres=metres,
+                drop_coarse=drop_coarse,
+                denoise=denoise and (True if sigma is None else sigma),
+                n_pyramids=n_pyramids,
+                channels=channels,
+                noise_range=noise_range,
+                local_noise=local_noise,
+                outliers=outliers,
+                progress=work.progress,
+            )
+
+        filtered = request.computed(compute, 0.05, 0.7)
         for line in filtered.changes:
             request.say(line)
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:
             request.stage(tr("Measuring the errors of every level"))
-            geo = filtered.geo.with_errors(request.progress(0.7, 0.75), filtered.finest)
+            geo = request.computed(
+                lambda work: filtered.geo.with_errors(work.progress, filtered.finest), 0.7, 0.75
+            )
             save(request, geo, path, 0.75, 0.85)
             results["OUTPUT"] = path
-        results.update(write_restored(request, filtered.restored()))
+        restored = request.computed(lambda work: filtered.restored(), 0.85, 0.9)
+        results.update(write_restored(request, restored))
         results.update(self._difference(request, filtered))
         if not results:
             raise nothing_written(before)
-        return {**_figures(filtered), **results}
+        figures = request.computed(lambda work: _figures(filtered), 0.95, 1.0)
+        return {**figures, **results}
 
     def _difference(self, request: Request, filtered: Filtered) -> Values:
         from ..qgis_io.raster_writer import write_dem
@@ -298,7 +319,8 @@ class FilterLevels(PyramidAlgorithm):
             raise QgsProcessingException(
                 tr("A difference of DEMs needs a pyramid that was made from a DEM.")
             )
-        write_dem(path, filtered.difference(), crs_of(filtered.before), request.feedback)
+        difference = request.computed(lambda work: filtered.difference(), 0.9, 0.95)
+        write_dem(path, difference, crs_of(filtered.before), request.feedback)
         request.finish("DIFFERENCE", path, styles.style_difference)
         return {"DIFFERENCE": path}
 
@@ -332,7 +354,7 @@ def _levels(request: Request, geo: GeoPyramid) -> tuple[int, int] | None:
 
 
 def _sizes(request: Request) -> tuple[float, float] | None:
-    """Return the smallest and the largest size that is kept, in metres; None for all."""
+    """Return the smallest and the largest size that is kept; None for all."""
     smallest, largest = request.number("SMALLEST_SIZE"), request.number("LARGEST_SIZE")
     if smallest is None and largest is None:
         return None

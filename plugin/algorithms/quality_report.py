@@ -90,11 +90,16 @@ class QualityReport(PyramidAlgorithm):
 
         geo = self.geo_pyramid(request)
         request.stage(tr("Measuring and drawing"))
-        page, numbers = report_page(
-            geo, request.whole_numbers("LEVELS") or None, request.progress(0.1, 0.95)
+        levels = request.whole_numbers("LEVELS") or None
+        page, numbers = request.computed(
+            lambda work: report_page(geo, levels, work.progress), 0.1, 0.9
         )
         texts = {"OUTPUT": page, "FIGURES": json.dumps(numbers, indent=1, allow_nan=False)}
-        measured = geo if geo.errors else geo.with_errors(request.progress(0.95, 1.0))
+        measured = (
+            geo
+            if geo.errors
+            else request.computed(lambda work: geo.with_errors(work.progress), 0.9, 1.0)
+        )
         results = figures(measured)
         for name, text in texts.items():
             path = request.output_file(name)

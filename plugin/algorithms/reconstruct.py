@@ -74,10 +74,8 @@ class Reconstruct(PyramidAlgorithm):
         from wavelet_gis.workflows.reconstruct import reconstruct
 
         geo = self.geo_pyramid(request)
-        request.progress()(0.3)
         request.stage(tr("Synthesising the finest level"))
-        restored = reconstruct(geo)
-        request.progress()(0.6)
+        restored = request.computed(lambda work: reconstruct(geo), 0.05, 0.6)
         request.stage(tr("Writing {}").format(restored.size))
         results = write_restored(request, restored)
         if not results:

@@ -25,7 +25,9 @@ from ._dem_input import DemInput
 
 if TYPE_CHECKING:
     from wavelet_gis.model.terrain import Terrain
+    from wavelet_gis.workflows.simplify import Simplified
 
+    from ..qgis_io.patience import Work
     from ..ui.dependencies import Package
 
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
@@ -176,18 +178,27 @@ class SimplifyDem(DemInput):
             "fit": tr("Refining the TIN"),
             "errors": tr("Measuring the errors"),
         }
-        simplified = simplify(
-            terrain,
-            vertices=_vertices(request, terrain),
-            max_error=request.number("MAX_ERROR"),
-            max_rms=request.number("RMSE"),
-            fit=request.flag("FIT"),
-            refine=request.whole("REFINE"),
-            keep_points=request.flag("KEEP_POINTS"),
-            progress=request.progress(0.05, 0.7),
-            on_stage=lambda name: request.stage(stages[name]),
-            **design_options(request),
-        )
+        vertices, max_error = _vertices(request, terrain), request.number("MAX_ERROR")
+        max_rms, fit = request.number("RMSE"), request.flag("FIT")
+        refine, keep_points = request.whole("REFINE"), request.flag("KEEP_POINTS")
+        design = design_options(request)
+
+        def compute(work: Work) -> Simplified:
+            tell = work.teller(request.stage)
+            return simplify(
+                terrain,
+                vertices=vertices,
+                max_error=max_error,
+                max_rms=max_rms,
+                fit=fit,
+                refine=refine,
+                keep_points=keep_points,
+                progress=work.progress,
+                on_stage=lambda name: tell(stages[name]),
+                **design,
+            )
+
+        simplified = request.computed(compute, 0.05, 0.7)
         figures = {
             **surface_figures(simplified),
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,
@@ -197,7 +208,9 @@ class SimplifyDem(DemInput):
         path = request.output_file("OUTPUT")
         if path:
             request.stage(tr("Measuring the errors of every level"))
-            analysis = simplified.analysis(progress=request.progress(0.7, 0.75))
+            analysis = request.computed(
+                lambda work: simplified.analysis(progress=work.progress), 0.7, 0.75
+            )
             save(request, analysis.geo, path, 0.75, 0.9)
             results["OUTPUT"] = path
         results.update(write_surface(request, simplified))

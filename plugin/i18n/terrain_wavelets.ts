@@ -865,12 +865,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Drop details that are larger on the ground, in metres.</source>
+    <source>Drop details that are larger on the ground, in the same unit.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Drop details that are smaller on the ground, in metres.</source>
+    <source>Drop details that are smaller on the ground, in the unit of x and y, or metres for a geographic CRS. The pyramid may be of any kind.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1735,7 +1735,7 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
-    <source>The Python package numba is missing: the work takes some ten times longer, with the same result. Install it {} and start QGIS again.</source>
+    <source>The Python package numba is missing: the work takes two to seven times as long, with the same result. Install it {} and start QGIS again.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -72,7 +72,10 @@ def write_raster(request: Request, name: str, surface: Surface) -> str:
     from ..qgis_io.raster_writer import write_dem
 
     path = request.output_layer(name)
-    dem = surface_dem(surface.geo, surface.mesh, cell_size=request.size("CELL_SIZE"))
+    cell_size = request.size("CELL_SIZE")
+    dem = request.computed(
+        lambda work: surface_dem(surface.geo, surface.mesh, cell_size=cell_size), 0.8, 0.85
+    )
     write_dem(path, dem, crs_of(surface.geo), request.feedback)
     request.finish(name, path, styles.style_hillshade)
     return path

@@ -43,7 +43,15 @@ def save(request: Request, geo: GeoPyramid, path: str, start: float, stop: float
     with new_file(path, overwrite=True) as scratch:
         write_pyramid(scratch, geo, request.progress(start, middle))
         layers = chain(coarse_layers(geo), detail_layers(geo))
-        add_layers(scratch, layers, layer_wkt(geo), request.feedback)
+        n_faces = geo.pyramid.mesh(0).n_faces
+        add_layers(
+            scratch,
+            layers,
+            layer_wkt(geo),
+            request.feedback,
+            request.progress(middle, stop),
+            geo.pyramid.n_vertices(geo.pyramid.n_levels) + n_faces,
+        )
     request.progress(middle, stop)(1.0)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from qgis.core import QgsProcessingFeedback
 
 from ..qgis_io.crs_and_progress import progress, require_running
+from ..qgis_io.patience import Result, computed
 from ..ui.layer_styles import finish_output
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
         QgsProcessingContext,
         QgsProcessingFeatureSource,
     )
+
+    from ..qgis_io.patience import Work
 
 #: A choice that leaves it to the workflow, whose defaults are those of the command line.
 DEFAULT = "default"
@@ -185,6 +188,20 @@ class Request:
     def progress(self, start: float = 0.0, stop: float = 1.0) -> Callable[[float], bool]:
         """Return a progress function that drives a part of QGIS's bar."""
         return progress(self.feedback, start, stop)
+
+    def computed(
+        self, function: Callable[[Work], Result], start: float = 0.0, stop: float = 1.0
+    ) -> Result:
+        """Return what a function computes, which may take long without telling anything.
+
+        Parameters
+        ----------
+        function : callable
+            Takes a `plugin.qgis_io.patience.Work`. It must neither write nor use layers.
+        start, stop : float
+            The part of the bar that it drives.
+        """
+        return computed(self.feedback, function, start, stop)
 
     def _is_open(self, name: str) -> bool:
         definition = self.algorithm.parameterDefinition(name)

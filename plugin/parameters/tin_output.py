@@ -62,6 +62,6 @@ def write_layer(request: Request, name: str, geo: GeoPyramid, layer: Layer) -> s
     )
     if sink is None:
         raise QgsProcessingException(request.algorithm.invalidSinkError(request.parameters, name))
-    vectors.add_layer(sink, layer, request.feedback)
+    vectors.add_layer(sink, layer, request.feedback, report=request.progress(0.85, 0.95))
     request.finish(name, destination, partial(styles.apply_qml, qml=layer.style))
     return destination

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import struct
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -31,10 +31,17 @@ Path = str | os.PathLike[str]
 
 _GEOMETRY_TYPES = {"Point Z": ogr.wkbPoint25D, "Polygon Z": ogr.wkbPolygon25D}
 #: Rows inserted between two looks at the cancel button.
-CHUNK = 50_000
+CHUNK = 20_000
 
 
-def add_layers(path: Path, layers: Iterable[Layer], wkt: str | None, feedback: QgsFeedback) -> None:
+def add_layers(
+    path: Path,
+    layers: Iterable[Layer],
+    wkt: str | None,
+    feedback: QgsFeedback,
+    report: Callable[[float], bool],
+    n_rows: int,
+) -> None:
     """Add layers and their styles to a GeoPackage that is there already.
 
     Parameters
@@ -44,6 +51,11 @@ def add_layers(path: Path, layers: Iterable[Layer], wkt: str | None, feedback: Q
     wkt : str or None
         CRS of all of them.
     feedback : QgsFeedback
+        Holds the cancel button.
+    report : callable
+        Takes the fraction that is done.
+    n_rows : int
+        Of all layers together.
 
     Raises
     ------
@@ -54,17 +66,22 @@ def add_layers(path: Path, layers: Iterable[Layer], wkt: str | None, feedback: Q
     from wavelet_gis.io.geopackage import check_database, check_rows, write_styles
     from wavelet_gis.io.read_back import read_back
 
-    styles, n_rows = [], {}
+    styles, rows, done = [], {}, 0
     for layer in layers:
         require_running(feedback)
         _create(path, layer, wkt)
-        _insert(path, layer, feedback)
+        for n_inserted in _insert(path, layer):
+            done += n_inserted
+            report(0.9 * min(done / max(n_rows, 1), 1.0))
+            require_running(feedback)
         _index(path, layer)
-        n_rows[layer.name] = len(layer.geometry)
+        rows[layer.name] = len(layer.geometry)
         styles.append((layer.name, layer.title, layer.style, layer.description))
     write_styles(path, styles)
+    report(0.95)
     read_back(path, check_database)
-    read_back(path, partial(check_rows, n_rows=n_rows))
+    require_running(feedback)
+    read_back(path, partial(check_rows, n_rows=rows))
 
 
 def _create(path: Path, layer: Layer, wkt: str | None) -> None:
@@ -96,7 +113,8 @@ def _create(path: Path, layer: Layer, wkt: str | None) -> None:
         table = dataset = None  # closes the file
 
 
-def _insert(path: Path, layer: Layer, feedback: QgsFeedback) -> None:
+def _insert(path: Path, layer: Layer) -> Iterator[int]:
+    """Insert the rows of a layer and yield how many, after each piece of them."""
     from wavelet_gis.io.geopackage import open_for_writing
 
     names = ", ".join(_quoted(name) for name in ("geom", *layer.fields))
@@ -109,7 +127,6 @@ def _insert(path: Path, layer: Layer, feedback: QgsFeedback) -> None:
         # Magic, version, flags (little-endian, no envelope), CRS: the header of a geometry.
         header = struct.pack("<2sBBi", b"GP", 0, 1, srs_id)
         for start in range(0, len(layer.geometry), CHUNK):
-            require_running(feedback)
             stop = start + CHUNK
             blobs = [header + wkb for wkb in layer.geometry[start:stop]]
             connection.executemany(
@@ -117,6 +134,7 @@ def _insert(path: Path, layer: Layer, feedback: QgsFeedback) -> None:
                 f"INSERT INTO {_quoted(layer.name)} ({names}) VALUES ({marks})",  # nosec B608
                 zip(blobs, *(column[start:stop] for column in columns), strict=True),
             )
+            yield len(blobs)
         if len(layer.geometry):
             connection.execute(
                 "UPDATE gpkg_contents SET min_x = ?, min_y = ?, max_x = ?, max_y = ? "

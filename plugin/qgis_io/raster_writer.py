@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -74,9 +75,15 @@ def write_dem(
 
 
 def write_bands(
-    path: str, bands: Bands, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback
+    path: str,
+    bands: Bands,
+    crs: QgsCoordinateReferenceSystem,
+    feedback: QgsFeedback,
+    report: Callable[[float], bool],
 ) -> None:
     """Write ``wavelet_gis.products.vertex_raster.Bands`` as a GeoTIFF, each band with its name.
+
+    ``report`` takes the fraction that is done.
 
     Raises
     ------
@@ -106,6 +113,7 @@ def write_bands(
             band.SetDescription(bands.names[k])
             band.SetNoDataValue(bands.nodata)
             is_written &= _write_strips(band, bands.values[k], feedback)
+            report((k + 1) / n_bands)
         band = dataset = None  # closes the file
         if not is_written:
             raise refusal(gdal.GetLastErrorMsg())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 #: Features read or written between two looks at the cancel button.
 CHUNK = 5_000
+#: Part of the whole work by which an input is read.
+READ_BY = 0.05
 
 
 class Points(NamedTuple):
@@ -197,6 +199,7 @@ def add_layer(
     layer: Layer,
     feedback: QgsFeedback,
     rows: NDArray[np.intp] | None = None,
+    report: Callable[[float], bool] | None = None,
 ) -> int:
     """Add the features of a ``wavelet_gis.products.layers.Layer`` to a sink made with its fields.
 
@@ -207,6 +210,8 @@ def add_layer(
     feedback : QgsProcessingFeedback
     rows : array of int, optional
         Which of them; all by default.
+    report : callable, optional
+        Takes the fraction that is done.
 
     Returns
     -------
@@ -219,6 +224,8 @@ def add_layer(
     columns = [column[selected].tolist() for column in layer.fields.values()]
     for start in range(0, len(geometries), CHUNK):
         require_running(feedback)
+        if report is not None:
+            report(start / len(geometries))
         features = []
         for k in range(start, min(start + CHUNK, len(geometries))):
             feature = QgsFeature(fields)
@@ -237,9 +244,12 @@ def add_layer(
 
 
 def _features(source: QgsProcessingFeatureSource, feedback: QgsFeedback) -> Iterator[QgsFeature]:
+    """Yield the features of an input, which are read in the first part of the work."""
     feature: QgsFeature
+    n_features = max(source.featureCount(), 1)
     for count, feature in enumerate(source.getFeatures()):
         if count % CHUNK == 0:
+            feedback.setProgress(100.0 * READ_BY * min(count / n_features, 1.0))
             require_running(feedback)
         if feature.hasGeometry():
             yield feature

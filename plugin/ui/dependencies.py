@@ -41,7 +41,6 @@ NUMBA = Package("numba", "numba", "python3-numba")
 LASPY = Package("laspy", "laspy[lazrs]")
 LAZRS = Package("lazrs", "lazrs")
 PYPROJ = Package("pyproj", "pyproj", "python3-pyproj")
-PYTHONCDT = Package("pythoncdt", "PythonCDT")
 SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
 TRIMESH = Package("trimesh", "trimesh")
 EZDXF = Package("ezdxf", "ezdxf")
@@ -134,8 +133,8 @@ def slow_without_numba() -> str | None:
     if not missing([NUMBA]):
         return None
     return tr(
-        "The Python package numba is missing: the work takes some ten times longer, with the same "
-        "result. Install it {} and start QGIS again."
+        "The Python package numba is missing: the work takes two to seven times as long, with the "
+        "same result. Install it {} and start QGIS again."
     ).format(remedy([NUMBA]))
 
 

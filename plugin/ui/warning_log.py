@@ -6,17 +6,21 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TextIO
-
-if TYPE_CHECKING:
-    from qgis.core import QgsProcessingFeedback
+from typing import Any, Protocol, TextIO
 
 _feedbacks = threading.local()
 _show_before: Callable[..., None] | None = None
 
 
+class Warnings(Protocol):
+    """A log, as far as warnings go."""
+
+    def pushWarning(self, warning: str | None) -> None:
+        """Show a warning."""
+
+
 @contextmanager
-def shown_in(feedback: QgsProcessingFeedback, wording: Callable[[Any], str]) -> Iterator[None]:
+def shown_in(feedback: Warnings, wording: Callable[[Any], str]) -> Iterator[None]:
     """Show our warnings that this thread raises inside the block in its log.
 
     QGIS runs algorithms in several threads, so Python's own ``catch_warnings``, which swaps the
@@ -25,7 +29,7 @@ def shown_in(feedback: QgsProcessingFeedback, wording: Callable[[Any], str]) -> 
 
     Parameters
     ----------
-    feedback : QgsProcessingFeedback
+    feedback : QgsProcessingFeedback, or what stands for it
         The log.
     wording : callable
         Takes a warning and returns what to show.
@@ -37,6 +41,11 @@ def shown_in(feedback: QgsProcessingFeedback, wording: Callable[[Any], str]) -> 
         yield
     finally:
         _feedbacks.current = outer
+
+
+def shown_now() -> tuple[Warnings, Callable[[Any], str]] | None:
+    """Return where this thread's warnings are shown, and how they are worded; None for nowhere."""
+    return getattr(_feedbacks, "current", None)
 
 
 def _install() -> None:

@@ -10,7 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from qgis_fixtures import COMMAND
-from qgis_layers import assert_same_raster, hills, survey, write_las, write_raster
+from qgis_layers import (
+    assert_same_raster,
+    hills,
+    survey,
+    write_las,
+    write_points,
+    write_raster,
+)
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -112,6 +119,23 @@ def test_without_pythoncdt_a_cloud_is_triangulated_by_scipy(qgis_process, tmp_pa
     path = write_las(tmp_path / "points.las", survey(300))
     parameters = {"INPUT": path, "LEVELS": 3, "OUTPUT": str(tmp_path / "o.gpkg")}
     assert qgis_process("analysepointcloud", parameters, ["pythoncdt"])["N_VERTICES"] == 300
+
+
+def test_without_pythoncdt_breaklines_are_edges_all_the_same(qgis_process, tmp_path):
+    points = write_points(tmp_path / "points.gpkg", survey(400))
+    lines = tmp_path / "lines.geojson"
+    line = [[700100.0, 6600200.0], [700500.0, 6600520.0], [700900.0, 6600480.0]]
+    geometry = {"type": "LineString", "coordinates": line}
+    crs = {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::2154"}}
+    feature = {"type": "Feature", "properties": {}, "geometry": geometry}
+    lines.write_text(json.dumps({"type": "FeatureCollection", "crs": crs, "features": [feature]}))
+    parameters = {"INPUT": points, "BREAKLINES": str(lines), "LEVELS": 2}
+    made = [
+        qgis_process("analysetin", {**parameters, "OUTPUT": str(tmp_path / f"{k}.gpkg")}, hidden)
+        for k, hidden in enumerate([(), ("pythoncdt", "shapely")])
+    ]
+    for figure in ("N_VERTICES", "N_FACES", "COARSE_VERTICES", "MAX_ERROR_LINES"):
+        assert made[0][figure] == pytest.approx(made[1][figure]), figure
 
 
 @pytest.mark.parametrize(("hidden", "suffix"), [("trimesh", ".glb"), ("ezdxf", ".dxf")])

@@ -452,20 +452,6 @@ def test_a_command_for_a_terminal_is_quoted(qgis, monkeypatch):
     assert '"laspy[lazrs]"' in dependencies.remedy([dependencies.LASPY])
 
 
-def test_a_cloud_needs_no_pythoncdt_and_breaklines_do(provider, tmp_path):
-    from qgis.core import QgsProcessingContext
-    from terrain_wavelets.plugin.parameters.request import Request
-    from terrain_wavelets.plugin.ui import dependencies
-
-    def needed(name, parameters):
-        algorithm = provider.algorithm(name)
-        return algorithm.packages(Request(algorithm, parameters, QgsProcessingContext()))
-
-    assert dependencies.PYTHONCDT not in needed("analysepointcloud", {"INPUT": "a.laz"})
-    assert needed("analysetin", {"INPUT": "a.gpkg"}) == ()
-    assert needed("analysetin", {"BREAKLINES": "b.gpkg"}) == (dependencies.PYTHONCDT,)
-
-
 def test_an_outline_that_may_move_lets_a_level_be_coarser(run, tmp_path):
     values = hills(40, 50).astype("float32")
     rows, columns = np.mgrid[:40, :50]
@@ -499,3 +485,71 @@ def test_an_error_names_parameters_as_the_dialog_does(provider):
     assert provider.algorithm("analysedem").in_words(error) == (
         "'Stop at this RMSE' is -1; leave out 'Stop at this number of vertices'."
     )
+
+
+def test_a_size_is_filtered_in_the_unit_of_the_layer_on_a_default_pyramid(run, tmp_path):
+    path = write_raster(tmp_path / "feet.tif", hills(60, 60).astype("float32"), None, 2264, cell=1)
+    pyramid = run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg")})["OUTPUT"]
+    log = Log()
+    parameters = {"INPUT": pyramid, "SMALLEST_SIZE": 12.0, "DEM": str(tmp_path / "f.tif")}
+    made = run("filterlevels", parameters, feedback=log)
+    assert made["RMS_CHANGE"] > 0
+    (line,) = [line for line in log.lines if "sizes of" in line]
+    assert "3.65761" in line  # twelve feet, in metres
+
+
+def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
+    """A step that asks nobody for long, as a triangulation does."""
+    import threading
+    import time
+
+    from terrain_wavelets.plugin.qgis_io.patience import computed
+
+    from wavelet_core.errors import Cancelled
+
+    log, told = Log(), []
+    timer = threading.Timer(1.5, log.cancel)
+    timer.start()
+    began = time.perf_counter()
+
+    def work(work):
+        time.sleep(8)
+        told.append(work.progress(1.0))
+
+    with pytest.raises(Cancelled):
+        computed(log, work, 0.2, 0.6)
+    assert time.perf_counter() - began < 4
+    assert len(set(log.fractions)) >= 3
+    assert log.fractions == sorted(log.fractions)
+    assert min(log.fractions) >= 20
+    assert max(log.fractions) < 60
+    assert not told, "nobody waited for it"
+
+
+def test_what_is_computed_comes_back_with_its_warnings_notes_and_errors(qgis):
+    from terrain_wavelets.plugin.qgis_io.patience import computed
+    from terrain_wavelets.plugin.ui.warning_log import shown_in
+
+    from wavelet_core.errors import MeshError
+    from wavelet_gis.errors import TerrainWarning
+    from wavelet_gis.notes import collected, warn
+
+    log = Log()
+
+    def work(work):
+        warn(TerrainWarning, "odd", "this is odd")
+        work.teller(log.pushInfo)("begun")
+        assert work.progress(0.5)
+        return 7
+
+    with shown_in(log, str), collected() as notes:
+        assert computed(log, work, 0.0, 1.0) == 7
+    assert [note.code for note in notes] == ["odd"]
+    assert any("this is odd" in line for line in log.warnings)
+    assert log.lines == ["begun"]
+
+    def fails(work):
+        raise MeshError("no mesh")
+
+    with pytest.raises(MeshError, match="no mesh"):
+        computed(log, fails, 0.0, 1.0)

@@ -17,6 +17,8 @@ def band_gains(
     pyramid: Pyramid,
     levels: tuple[int, int] | None = None,
     lengths: tuple[float, float] | None = None,
+    *,
+    is_empty_fine: bool = False,
 ) -> dict[int, float]:
     """Return the gains that keep a band of details and drop the others.
 
@@ -29,6 +31,8 @@ def band_gains(
         Instead, shortest and longest size on the ground, in the unit of x and y: details are
         kept if the median edge length of the mesh that they were taken from is in between, as
         `wavelet_core.level_spacings` tells it.
+    is_empty_fine : bool
+        Whether a band of lengths that no level has details of is no error; all are dropped then.
 
     Raises
     ------
@@ -54,7 +58,7 @@ def band_gains(
     else:
         sizes = level_spacings(pyramid)[1:].tolist()
     gains = {level: float(low <= size <= high) for level, size in enumerate(sizes)}
-    if lengths is not None and gains and not any(gains.values()):
+    if lengths is not None and gains and not (any(gains.values()) or is_empty_fine):
         raise OptionError(
             "no level has details of {low:.4g} to {high:.4g}, in the unit of x and y; they are of "
             "{least:.4g} to {most:.4g}. Choose others, or analyse with more levels.",

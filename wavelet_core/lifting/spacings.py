@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .._validate import FloatArray
+from ..mesh.triangle_mesh import TriangleMesh
 from .pyramid import Pyramid
 
 
@@ -31,8 +32,14 @@ def level_spacings(pyramid: Pyramid) -> FloatArray:
     """
     spacings = np.full(pyramid.n_levels + 1, np.nan)
     for level, mesh in enumerate(pyramid):
-        if mesh.n_faces:
-            corners = mesh.vertices[mesh.faces, :2]
-            sides = corners - corners[:, [1, 2, 0]]
-            spacings[level] = np.median(np.hypot(sides[..., 0], sides[..., 1]))
+        spacings[level] = mesh_spacing(mesh)
     return spacings
+
+
+def mesh_spacing(mesh: TriangleMesh) -> float:
+    """Return the median length, in plan, of the edges of a mesh; NaN without faces."""
+    if not mesh.n_faces:
+        return float("nan")
+    corners = mesh.vertices[mesh.faces, :2]
+    sides = corners - corners[:, [1, 2, 0]]
+    return float(np.median(np.hypot(sides[..., 0], sides[..., 1])))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .._validate import FloatArray, IntArray
 from ..errors import MeshError, MissingDependencyError, OptionError
+from .constraints import with_edges
 
 #: A hull face is a sliver when its doubled area is at most this part of its longest edge squared.
 SLIVER_TOLERANCE = 1e-9
@@ -75,13 +76,13 @@ def delaunay_faces(plan: FloatArray, edges: IntArray | None = None) -> IntArray:
     MeshError
         Fewer than three points, all of them on one line, or constraint edges that cross.
     MissingDependencyError
-        pythoncdt is absent and SciPy's Delaunay fails on the points, or there are edges.
+        pythoncdt is absent, and neither SciPy nor GEOS can triangulate the points.
 
     Notes
     -----
     pythoncdt is used (measured in the design notes: 2-3 s a million points, valid on every case
-    tried). SciPy's Qhull is the last resort: it works on centred coordinates and its result is
-    refused unless every point is used and the Euler count is right.
+    tried). Without it, SciPy's Qhull or, where that fails, GEOS works on centred coordinates; a
+    result in which a point or a face is lost or flat is refused. Edges then come in by flips.
     """
     if len(plan) < 3:
         raise MeshError(
@@ -92,7 +93,10 @@ def delaunay_faces(plan: FloatArray, edges: IntArray | None = None) -> IntArray:
     try:
         import pythoncdt
     except ImportError:
-        faces = _qhull_faces(plan, edges)
+        centred = plan - plan.mean(axis=0)
+        faces = _checked_faces(centred)
+        if edges is not None and len(edges):
+            faces = with_edges(centred, faces, edges)
     else:
         faces = _cdt_faces(pythoncdt, plan, edges)
     if len(faces) == 0:
@@ -127,27 +131,61 @@ def _cdt_faces(pythoncdt: Any, plan: FloatArray, edges: IntArray | None) -> IntA
     return np.ascontiguousarray(triangles["vertices"], dtype=np.int64)
 
 
-def _qhull_faces(plan: FloatArray, edges: IntArray | None) -> IntArray:
-    if edges is not None and len(edges):
-        raise MissingDependencyError(
-            "breaklines need pythoncdt; install it with 'pip install pythoncdt'."
-        )
+def _checked_faces(centred: FloatArray) -> IntArray:
+    """Return the Delaunay faces, peeled, by the first library that loses nothing."""
+    for triangulate in (_qhull_faces, _geos_faces):
+        faces = triangulate(centred)
+        peeled = _without_hull_slivers(centred, faces)
+        if _is_whole(centred, faces, peeled):
+            return peeled
+    raise MissingDependencyError(
+        "the triangulation by SciPy loses points or has flat faces on this input; "
+        "install pythoncdt with 'pip install pythoncdt'."
+    )
+
+
+def _qhull_faces(centred: FloatArray) -> IntArray:
     from scipy.spatial import Delaunay
 
-    centred = plan - plan.mean(axis=0)
     faces = Delaunay(centred).simplices.astype(np.int64)
-    a, b, c = (centred[faces[:, k]] for k in range(3))
-    areas = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    faces[areas < 0] = faces[areas < 0, ::-1]
+    is_clockwise = _doubled_areas(centred, faces) < 0
+    faces[is_clockwise] = faces[is_clockwise, ::-1]
+    return faces
+
+
+def _geos_faces(centred: FloatArray) -> IntArray:
+    """Return the faces by GEOS; none where shapely is absent."""
+    try:
+        import shapely
+    except ImportError:
+        return np.empty((0, 3), dtype=np.int64)
+    triangles = shapely.delaunay_triangles(shapely.MultiPoint(centred))
+    corners = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3].reshape(-1, 2)
+    both = np.concatenate([centred, corners])  # GEOS hands out the numbers that it was given
+    _, place = np.unique(both, axis=0, return_inverse=True)
+    vertex_of_place = np.empty(len(both), dtype=np.int64)
+    vertex_of_place[place.ravel()[: len(centred)]] = np.arange(len(centred))
+    faces: IntArray = vertex_of_place[place.ravel()[len(centred) :]].reshape(-1, 3)
+    return faces
+
+
+def _is_whole(centred: FloatArray, faces: IntArray, peeled: IntArray) -> bool:
+    """Return whether every point is used, the faces are a disk, and none is flat once peeled."""
     directed = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     n_edges = len(np.unique(np.sort(directed, axis=1), axis=0))
-    is_disk = len(plan) - n_edges + len(faces) == 1
-    if len(np.unique(faces)) != len(plan) or not is_disk or (areas == 0).any():
-        raise MissingDependencyError(
-            "SciPy's triangulation lost points or has flat faces on this input; "
-            "install pythoncdt with 'pip install pythoncdt'."
-        )
-    return faces
+    if len(np.unique(faces)) != len(centred) or len(centred) - n_edges + len(faces) != 1:
+        return False
+    return len(np.unique(peeled)) == len(centred) and bool(
+        (_doubled_areas(centred, peeled) > 0).all()
+    )
+
+
+def _doubled_areas(plan: FloatArray, faces: IntArray) -> FloatArray:
+    a, b, c = (plan[faces[:, k]] for k in range(3))
+    areas: FloatArray = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (
+        c[:, 0] - a[:, 0]
+    )
+    return areas
 
 
 def _without_hull_slivers(plan: FloatArray, faces: IntArray) -> IntArray:

@@ -87,7 +87,7 @@ def tin_with_lines(
     MeshError
         Fewer than three points, or lines that cross.
     MissingDependencyError
-        pythoncdt is absent.
+        pythoncdt is absent, and neither SciPy nor GEOS can triangulate the points.
     """
     n_points = len(points)
     rings = [ring for ring in outline if len(ring) > 1]

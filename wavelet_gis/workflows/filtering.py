@@ -9,10 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from wavelet_core import OptionError, Progress, Pyramid, TriangleMesh, band_gains, denoise, relifted
+from wavelet_core import (
+    OptionError,
+    Progress,
+    Pyramid,
+    TriangleMesh,
+    analyse,
+    band_gains,
+    denoise,
+    level_spacings,
+    relifted,
+)
 from wavelet_core.filtering.gains import channel_index
 from wavelet_core.filtering.noise import estimate_noise
 from wavelet_core.filtering.noise_model import Noise, RangeOption
+from wavelet_core.lifting.spacings import mesh_spacing
 from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
 from wavelet_gis.model.attributes.categories import category_gains
@@ -24,10 +35,20 @@ from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, require_leve
 from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
 from wavelet_gis.workflows.save import Layers, write_pyramid_file
 
-__all__ = ["Filtered", "chosen_gains", "denoised", "filter_pyramid", "with_level_gains"]
+__all__ = [
+    "Filtered",
+    "chosen_gains",
+    "denoised",
+    "filter_pyramid",
+    "with_level_gains",
+    "with_sizes",
+]
 
 #: How many pyramids in random order denoising averages.
 N_PYRAMIDS = 8
+#: By how much a level in random order is wider than the finer one, at least, and how many levels
+#: are built at most to reach a size.
+_GROWTH, _MOST_LEVELS = 1.08, 80
 #: Options that tell of the noise, beside its deviation.
 NOISE_OPTIONS = ("noise_range", "local_noise", "outliers")
 
@@ -129,7 +150,8 @@ def filter_pyramid(
     data : Analysis, Filtered or GeoPyramid
         The pyramid.
     gains, levels, metres
-        See `chosen_gains`.
+        See `chosen_gains`. Where the levels of the pyramid are no bands of sizes, `metres` goes by
+        those of another that is built for it; see `with_sizes`.
     drop_coarse : bool
         Leave out the coarsest surface too, so that the details remain by themselves.
     denoise : bool or float
@@ -175,9 +197,11 @@ def filter_pyramid(
             "{0}, {1} and {2} tell of noise; give {3} too.", *NOISE_OPTIONS, "denoise"
         )
     require_levels(geo)
-    wanted = chosen_gains(geo, single, levels=levels, metres=metres)
+    builds_levels = metres is not None and not _has_sizes(geo, metres)
+    wanted = chosen_gains(geo, single, levels=levels, metres=None if builds_levels else metres)
     changed, sigmas = geo, dict[str, float]()
     finest_before = geo.pyramid.synthesise()
+    middle = (0.7 if builds_levels else 1.0) if asks_denoising else 0.0
     if asks_denoising:
         changed, sigmas = denoised(
             changed,
@@ -188,17 +212,22 @@ def filter_pyramid(
             local_noise=local_noise,
             outliers=outliers,
             finest=finest_before,
-            progress=progress,
+            progress=part_of(progress, 0.0, middle),
         )
-    if asks_scales:
-        changed = with_level_gains(changed, wanted, drop_coarse=drop_coarse)
+    if builds_levels:
+        assert metres is not None
+        changed = with_sizes(
+            changed, metres, drop_coarse=drop_coarse, progress=part_of(progress, middle, 1.0)
+        )
+    if wanted or (asks_scales and not builds_levels):
+        changed = with_level_gains(changed, wanted, drop_coarse=drop_coarse and not builds_levels)
     return Filtered(
         before=geo,
         geo=changed,
         finest_before=finest_before,
         finest=changed.pyramid.synthesise(),
         sigmas=sigmas,
-        gains=wanted if asks_scales else None,
+        gains=wanted if asks_scales and (wanted or not builds_levels) else None,
         n_pyramids=n_pyramids if asks_denoising else None,
     )
 
@@ -341,7 +370,7 @@ def chosen_gains(
         Keep the details of these levels only.
     metres : (float, float), optional
         Instead: keep details of this size on the ground only, in metres where the CRS tells its
-        unit, else in its own.
+        unit, else in its own. Levels in random order are bands of sizes.
 
     Raises
     ------
@@ -382,6 +411,66 @@ def with_level_gains(
     named = ", ".join(f"{level}={gain:g}" for level, gain in sorted(gains.items()))
     line = f"gains {named or 'unchanged'}" + ", without the coarse surface" * drop_coarse
     return geo.with_pyramid(pyramid, line)
+
+
+def with_sizes(
+    geo: GeoPyramid,
+    metres: tuple[float, float],
+    *,
+    drop_coarse: bool = False,
+    progress: Progress | None = None,
+) -> GeoPyramid:
+    """Return the pyramid of the terrain in which only details of some sizes are left.
+
+    Its own levels need not be bands of sizes: another pyramid, in random order, is built for that.
+
+    Parameters
+    ----------
+    geo : GeoPyramid
+        What is filtered.
+    metres : (float, float)
+        Smallest and largest size that stays, in metres where the CRS tells its unit, else in its
+        own.
+    drop_coarse : bool
+        Leave out what is larger than all details too.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    OptionError
+        Bounds in the wrong order.
+    """
+    low, high = metres[0] * _metre(geo), metres[1] * _metre(geo)
+    finest = geo.pyramid.synthesise()
+    largest = max(bound for bound in (low, high, 0.0) if bound < float("inf"))
+    spacing = mesh_spacing(finest)
+    n_levels = 1
+    if largest > spacing > 0:
+        n_levels += min(int(np.log(largest / spacing) / np.log(_GROWTH)), _MOST_LEVELS)
+    by_size = analyse(
+        finest,
+        levels=n_levels,
+        partition="random",
+        prediction="plane",
+        locked=geo.pyramid.locked,
+        progress=progress,
+    )
+    gains = band_gains(by_size, lengths=(low, high), is_empty_fine=True)
+    channels, categories = by_size.channels, geo.categories
+    coarse = [0.0 if drop_coarse and name not in categories else 1.0 for name in channels]
+    filtered = by_size.with_gains(category_gains(gains, channels, categories), coarse)
+    line = f"sizes of {metres[0]:g} to {metres[1]:g} kept, by a pyramid in random order"
+    line += ", without the coarse surface" * drop_coarse
+    return geo.with_pyramid(relifted(geo.pyramid, filtered.synthesise()), line)
+
+
+def _has_sizes(geo: GeoPyramid, metres: tuple[float, float]) -> bool:
+    """Return whether the levels of a pyramid are bands of sizes, and one is within bounds."""
+    if geo.pyramid.parameters.get("partition") != "random":
+        return False
+    sizes = level_spacings(geo.pyramid)[1:] / _metre(geo)
+    return bool(((metres[0] <= sizes) & (sizes <= metres[1])).any())
 
 
 def _metre(geo: GeoPyramid) -> float:

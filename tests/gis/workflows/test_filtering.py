@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from gis.samples import hills, write_tif
 
+import wavelet_gis as wg
 from wavelet_core import OptionError, analyse
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.workflows import filtering
@@ -83,3 +84,28 @@ def test_names_that_no_list_holds_are_refused(in_feet, tmp_path):
     with pytest.raises(OptionError, match="'most'; give one of all, coarse, none"):
         save(Analysis(in_feet), tmp_path / "a.gpkg", layers="most")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_sizes_are_filtered_on_whatever_pyramid(tmp_path):
+    """Narrow furrows over a broad hill, in a pyramid whose levels are no bands of sizes."""
+    x = np.arange(120.0)
+    hill = 30 * np.sin(x / 40) + 20 * np.cos(x[:, None] / 50)
+    furrows = 1.5 * np.sin(2 * np.pi * x / 6) + 0 * x[:, None]
+    path = write_tif(tmp_path / "furrows.tif", (hill + furrows).astype("f4"), crs="EPSG:25832")
+    geo = wg.analyse(wg.open(path)).geo
+    cell = level_spacings(geo.pyramid)[-1]
+    smooth = filter_pyramid(geo, metres=(12 * cell, np.inf))
+    left = smooth.finest.vertices[:, 2] - hill.ravel()
+    inner = np.zeros((120, 120), dtype=bool)
+    inner[10:-10, 10:-10] = True
+    assert np.std(left[inner.ravel()]) < 0.4 * np.std(furrows)
+    (line,) = smooth.changes
+    assert "by a pyramid in random order" in line
+    # The rest is what was taken: the two bands add up to the terrain.
+    rough = filter_pyramid(geo, metres=(0.0, 12 * cell), drop_coarse=True)
+    both = smooth.finest.vertices[:, 2] + rough.finest.vertices[:, 2]
+    np.testing.assert_allclose(both, smooth.finest_before.vertices[:, 2], atol=1e-6)
+    # A size larger than all that there is leaves the coarsest surface alone.
+    assert filter_pyramid(geo, metres=(1e5, np.inf)).change()[0] > smooth.change()[0]
+    with pytest.raises(OptionError, match="smaller bound first"):
+        filter_pyramid(geo, metres=(30.0, 20.0))
