@@ -188,7 +188,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
             request.say(tr("Cancelled; nothing was written."))
             return {}
         except WaveletError as error:
-            raise QgsProcessingException(self.in_words(error)) from error
+            raise QgsProcessingException(dependencies.with_remedy(self.in_words(error))) from error
         except MemoryError as error:
             raise QgsProcessingException(
                 tr(

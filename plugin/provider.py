@@ -9,6 +9,7 @@ from qgis.PyQt.QtGui import QIcon
 
 from .algorithms import ALGORITHMS
 from .packages import ICON, PLUGIN_FOLDER
+from .ui.options_page import add_page, remove_page
 from .ui.translation import tr
 
 MODELS = PLUGIN_FOLDER / "processing_models"
@@ -61,6 +62,16 @@ class TerrainWaveletsProvider(QgsProcessingProvider):
     def svgIconPath(self) -> str:
         """Return the icon's file, which Processing renders at any size."""
         return ICON
+
+    def load(self) -> bool:
+        """Add the page of options, then the algorithms."""
+        add_page(self.name(), self.icon())
+        self.refreshAlgorithms()
+        return True
+
+    def unload(self) -> None:
+        """Take the page of options away."""
+        remove_page()
 
     def loadAlgorithms(self) -> None:
         """Add every algorithm, then every model."""

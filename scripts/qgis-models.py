@@ -316,6 +316,185 @@ def dem_to_denoised_dem_and_report():
     model.write("dem_to_denoised_dem.model3")
 
 
+def lidar_to_contours():
+    """Point cloud to ground TIN, DEM and contours."""
+    model = Model(
+        "Point cloud to ground TIN and contours",
+        "Thins the ground points of a LAS or LAZ file to a TIN that is nowhere farther off than "
+        "you say, and draws contours that are as smooth as that allows.",
+    )
+    model.input(
+        QgsProcessingParameterFile(
+            "INPUT", "Point cloud file", fileFilter="LAS and LAZ (*.las *.laz *.LAS *.LAZ)"
+        ),
+        "With classified ground, or see below.",
+    )
+    model.input(
+        QgsProcessingParameterString("CLASSES", "Classes", None, optional=True),
+        "ASPRS classes of the points that make the ground; empty for class 2, or for all points "
+        "where none has it.",
+    )
+    model.input(
+        optional_number("MAX_ERROR", "Largest error", DOUBLE, 0.25),
+        "No ground point is farther above or below the TIN, in the unit of elevation.",
+    )
+    model.input(
+        optional_number("INTERVAL", "Interval of the contours", DOUBLE, 1.0, 0.001),
+        "In the unit of elevation.",
+    )
+    model.input(
+        optional_number("CELL_SIZE", "Cell size", DOUBLE),
+        "Of the raster that the contours are drawn on, in the unit of the CRS; empty for the "
+        "spacing of the points.",
+    )
+    model.step(
+        "simplify",
+        "terrainwavelets:simplifypointcloud",
+        "Thin the ground to a TIN",
+        INPUT=input_("INPUT"),
+        CLASSES=given_or("CLASSES", ""),
+        MAX_ERROR=given_or("MAX_ERROR", 0.25),
+        CELL_SIZE=input_("CELL_SIZE"),
+        outputs={
+            "TIN": ("Ground TIN", "Triangles of the ground."),
+            "RASTER": ("Ground DEM!", "The TIN as a raster."),
+        },
+    )
+    model.step(
+        "contours",
+        "gdal:contour",
+        "Draw contours",
+        INPUT=result("simplify", "RASTER"),
+        BAND=1,
+        INTERVAL=given_or("INTERVAL", 1.0),
+        FIELD_NAME="ELEV",
+        outputs={"OUTPUT": ("Contours!", "Lines with their elevation in the field ELEV.")},
+    )
+    model.write("point_cloud_to_contours.model3")
+
+
+def dem_to_simplified_cog():
+    """DEM to a simplified raster for viewsheds and the web."""
+    model = Model(
+        "DEM to simplified COG",
+        "Takes out of a DEM what is smaller than an error that you allow, and writes it as a "
+        "cloud-optimised GeoTIFF, which is smaller and quicker, for viewsheds say. Its largest "
+        "error and RMSE are in the metadata of the file.",
+    )
+    model.input(QgsProcessingParameterRasterLayer("INPUT", "DEM"), "Raster of elevations.")
+    model.input(
+        optional_number("MAX_ERROR", "Largest error", DOUBLE, 1.0),
+        "No cell is farther off, in the unit of elevation.",
+    )
+    model.step(
+        "simplify",
+        "terrainwavelets:simplifydem",
+        "Simplify the DEM",
+        INPUT=input_("INPUT"),
+        MAX_ERROR=given_or("MAX_ERROR", 1.0),
+        outputs={"TIN": ("Simplified TIN", "Triangles between the vertices that are left.")},
+    )
+    model.step(
+        "cog",
+        "gdal:translate",
+        "Write the COG",
+        INPUT=result("simplify", "RASTER"),
+        EXTRA=QgsProcessingModelChildParameterSource.fromExpression(
+            "concat('-of COG -co COMPRESS=DEFLATE -co PREDICTOR=YES -mo MAX_ERROR=', "
+            "to_string(@Simplify_the_DEM_MAX_ERROR_SURFACE), ' -mo RMSE=', "
+            "to_string(@Simplify_the_DEM_RMSE_SURFACE))"
+        ),
+        outputs={"OUTPUT": ("Simplified DEM!", "Cloud-optimised GeoTIFF.")},
+    )
+    model.write("dem_to_simplified_cog.model3")
+
+
+def dems_to_change_by_scale():
+    """Two DEMs of different years to their difference, by scale."""
+    model = Model(
+        "Two DEMs to change by scale",
+        "Subtracts a DEM from a later one of the same cells and keeps the change that is larger on "
+        "the ground than you say: slides and fills stay, noise and vegetation go. A map for each "
+        "level shows at which scale the change is.",
+    )
+    model.input(QgsProcessingParameterRasterLayer("BEFORE", "Earlier DEM"), "Elevations.")
+    model.input(
+        QgsProcessingParameterRasterLayer("AFTER", "Later DEM"), "Elevations of the same cells."
+    )
+    model.input(
+        optional_number("SMALLEST_SIZE", "Smallest size of a change", DOUBLE, 20.0),
+        "Change that is smaller on the ground is left out; in the unit of x and y.",
+    )
+    model.step(
+        "difference",
+        "gdal:rastercalculator",
+        "Subtract",
+        INPUT_A=input_("BEFORE"),
+        BAND_A=1,
+        INPUT_B=input_("AFTER"),
+        BAND_B=1,
+        FORMULA="B.astype(numpy.float64)-A",
+        RTYPE=5,
+    )
+    model.step(
+        "analyse",
+        "terrainwavelets:analysedem",
+        "Analyse the difference",
+        INPUT=result("difference", "OUTPUT"),
+        LEVELS=12,
+        PARTITION="random",
+        PREDICTION="plane",
+    )
+    model.step(
+        "filter",
+        "terrainwavelets:filterlevels",
+        "Leave out small change",
+        INPUT=result("analyse", "OUTPUT"),
+        SMALLEST_SIZE=given_or("SMALLEST_SIZE", 20.0),
+        outputs={"DEM": ("Change!", "Difference without what is smaller.")},
+    )
+    model.step(
+        "energy",
+        "terrainwavelets:detaillayers",
+        "Map the change of each level",
+        INPUT=result("analyse", "OUTPUT"),
+        outputs={"ENERGY": ("Change by level", "A band for each level.")},
+    )
+    model.write("dems_to_change_by_scale.model3")
+
+
+def dem_to_landform_clusters():
+    """DEM to clusters of landforms by scale."""
+    model = Model(
+        "DEM to landform clusters",
+        "Groups the places of a DEM by how rough they are at each scale: plains, slopes, gullies, "
+        "woods or walls fall apart without being taught.",
+    )
+    model.input(QgsProcessingParameterRasterLayer("INPUT", "DEM"), "Raster of elevations.")
+    model.input(
+        optional_number("COUNT", "Number of clusters", INTEGER, None, 1),
+        "Empty for a number found from the data (2 to 10).",
+    )
+    model.step(
+        "analyse",
+        "terrainwavelets:analysedem",
+        "Analyse the DEM",
+        INPUT=input_("INPUT"),
+        LEVELS=8,
+        PARTITION="random",
+        PREDICTION="plane",
+    )
+    model.step(
+        "cluster",
+        "terrainwavelets:clusterdetails",
+        "Find the clusters",
+        INPUT=result("analyse", "OUTPUT"),
+        COUNT=input_("COUNT"),
+        outputs={"RASTER": ("Landforms!", "Labels from smooth to rough.")},
+    )
+    model.write("dem_to_landform_clusters.model3")
+
+
 def main():
     """Write all models."""
     application = QgsApplication([], False)
@@ -337,6 +516,10 @@ def main():
         dem_and_breaklines_to_mesh()
         point_cloud_to_filtered_dem()
         dem_to_denoised_dem_and_report()
+        lidar_to_contours()
+        dem_to_simplified_cog()
+        dems_to_change_by_scale()
+        dem_to_landform_clusters()
 
 
 if __name__ == "__main__":

@@ -13,6 +13,8 @@ from .filter_levels import FilterLevels
 from .quality_report import QualityReport
 from .reconstruct import Reconstruct
 from .simplify_dem import SimplifyDem
+from .simplify_point_cloud import SimplifyPointCloud
+from .thin_point_cloud import ThinPointCloud
 
 #: In the order of the toolbox's groups.
 ALGORITHMS = (
@@ -20,6 +22,8 @@ ALGORITHMS = (
     AnalysePointCloud,
     AnalyseTin,
     SimplifyDem,
+    SimplifyPointCloud,
+    ThinPointCloud,
     ExtractLevel,
     Reconstruct,
     FilterLevels,

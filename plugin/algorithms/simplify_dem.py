@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from qgis.core import (
     QgsProcessingOutputNumber,
@@ -25,6 +25,7 @@ from ._dem_input import DemInput
 
 if TYPE_CHECKING:
     from wavelet_gis.model.terrain import Terrain
+    from wavelet_gis.workflows.options import WaveletOptions
     from wavelet_gis.workflows.simplify import Simplified
 
     from ..qgis_io.patience import Work
@@ -39,6 +40,8 @@ class SimplifyDem(DemInput):
     """DEM to TIN."""
 
     GROUP = "analysis"
+    #: Whether the TIN is what a first click gives.
+    IS_TIN_BY_DEFAULT: ClassVar[bool] = True
 
     def name(self) -> str:
         """Return the public id."""
@@ -70,7 +73,7 @@ class SimplifyDem(DemInput):
 
     def declare(self) -> None:
         """Declare parameters and outputs."""
-        self.add_dem_parameters()
+        self.add_input_parameters()
         self.add(
             QgsProcessingParameterNumber(
                 "VERTICES", tr("Number of vertices"), WHOLE_NUMBER, None, True, 3
@@ -81,19 +84,19 @@ class SimplifyDem(DemInput):
             QgsProcessingParameterNumber(
                 "MAX_ERROR", tr("Largest error"), REAL_NUMBER, None, True, 0.0
             ),
-            tr("No cell is farther above or below the TIN, in the unit of elevation."),
+            tr("No cell or point is farther above or below the TIN, in the unit of elevation."),
         )
         self.add(
             QgsProcessingParameterNumber("RMSE", tr("RMSE"), REAL_NUMBER, None, True, 0.0),
-            tr("Root mean square error over all cells, in the unit of elevation."),
+            tr("Root mean square error over all cells or points, in the unit of elevation."),
         )
         add_design_parameters(self)
         self.add(
-            QgsProcessingParameterBoolean("FIT", tr("Fit the heights to all cells"), True),
+            QgsProcessingParameterBoolean("FIT", tr("Fit the heights to all that is given"), True),
             tr(
                 "Least squares: the smallest RMSE that these triangles can have. Without it the "
                 "TIN is the pyramid's coarsest level as it is; where the largest error is kept "
-                "small, heights are those of the cells."
+                "small, heights are those of the input."
             ),
             advanced=True,
         )
@@ -109,7 +112,7 @@ class SimplifyDem(DemInput):
         )
         self.add(
             QgsProcessingParameterBoolean(
-                "KEEP_POINTS", tr("Vertices are cells of the DEM"), False
+                "KEEP_POINTS", tr("Vertices are points of the input"), False
             ),
             tr("Height and all, also where the RMSE counts: heights are not fitted."),
             advanced=True,
@@ -123,12 +126,16 @@ class SimplifyDem(DemInput):
                 optional=True,
                 minValue=0.0,
             ),
-            tr("In the unit of the CRS; empty for the grid of the DEM."),
+            tr("In the unit of the CRS; empty for the grid of the DEM, or the spacing of points."),
             advanced=True,
         )
         self.add(
             QgsProcessingParameterFeatureSink(
-                "TIN", tr("Simplified TIN"), POLYGONS, optional=True, createByDefault=True
+                "TIN",
+                tr("Simplified TIN"),
+                POLYGONS,
+                optional=True,
+                createByDefault=self.IS_TIN_BY_DEFAULT,
             ),
             tr("Triangles with mean elevation and slope (degrees)."),
         )
@@ -150,11 +157,29 @@ class SimplifyDem(DemInput):
             tr("The reversible pyramid whose coarsest level the TIN was made from."),
             advanced=True,
         )
+        self.add_more_outputs()
         self.addOutput(QgsProcessingOutputNumber("N_VERTICES", tr("Number of vertices")))
         self.addOutput(QgsProcessingOutputNumber("N_FACES", tr("Number of triangles")))
-        self.addOutput(QgsProcessingOutputNumber("N_INPUT_VERTICES", tr("Cells with data")))
+        self.addOutput(
+            QgsProcessingOutputNumber("N_INPUT_VERTICES", tr("Cells with data, or points"))
+        )
         self.addOutput(QgsProcessingOutputNumber("N_LEVELS", tr("Number of levels")))
-        add_error_outputs(self, tr("at all cells"))
+        add_error_outputs(self, tr("at all cells or points"))
+
+    def add_input_parameters(self) -> None:
+        """Declare what is simplified."""
+        self.add_dem_parameters()
+
+    def add_more_outputs(self) -> None:
+        """Declare outputs that this kind of input has besides."""
+
+    def write_more(self, request: Request, simplified: Simplified) -> Values:
+        """Write them."""
+        return {}
+
+    def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:
+        """Return options that this kind of input has besides the design."""
+        return {}
 
     def refusal(self, request: Request) -> str | None:
         """Refuse more than one rule."""
@@ -181,7 +206,10 @@ class SimplifyDem(DemInput):
         vertices, max_error = _vertices(request, terrain), request.number("MAX_ERROR")
         max_rms, fit = request.number("RMSE"), request.flag("FIT")
         refine, keep_points = request.whole("REFINE"), request.flag("KEEP_POINTS")
-        design = design_options(request)
+        options: WaveletOptions = {
+            **design_options(request),
+            **self.more_options(request, terrain),
+        }
 
         def compute(work: Work) -> Simplified:
             tell = work.teller(request.stage)
@@ -195,10 +223,10 @@ class SimplifyDem(DemInput):
                 keep_points=keep_points,
                 progress=work.progress,
                 on_stage=lambda name: tell(stages[name]),
-                **design,
+                **options,
             )
 
-        simplified = request.computed(compute, 0.05, 0.7)
+        simplified = request.computed(compute, 0.15, 0.7)
         figures = {
             **surface_figures(simplified),
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,
@@ -214,6 +242,7 @@ class SimplifyDem(DemInput):
             save(request, analysis.geo, path, 0.75, 0.9)
             results["OUTPUT"] = path
         results.update(write_surface(request, simplified))
+        results.update(self.write_more(request, simplified))
         if not results:
             raise QgsProcessingException(
                 tr("No output is chosen; choose a TIN, a raster, a mesh or a pyramid.")

@@ -49,6 +49,161 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>CRS of the points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Classes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Classes are numbers separated by commas, such as 2,9.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Gaps at the outline only</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Height of points at one place</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Instead of the CRS in the file, or where it has none.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Keep all other dimensions</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Keep points of noise</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Keep what is not transformed (GPS time, flags, ...) in the pyramid, so that the reconstructed file has it too.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Keep withheld points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Let points of the classes 7 and 18 be part of the surface. Otherwise they are only carried, and the reconstructed file has them.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Longest edge</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Names of further dimensions of the file, separated by commas.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 for ground and water. Empty for all points.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 for ground and water. Empty for those of the ground, if the file tells them, else for all.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Other attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Point cloud file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Reading the points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Taken: all points, since none is classified as ground (class 2)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Taken: the {} points of the ground (class 2), of {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>The same for points with the withheld flag.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Triangles with a longer edge are left out, as gaps of the point cloud; in the unit of x and y, or metres for a geographic CRS. 0 for five times the spacing that 95 % of the points keep; empty to fill the convex hull.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Triangulating {} points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Which height points have that share x and y; each of them comes back.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>{}: QGIS does not understand the CRS in the file; choose one.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>{}: there is no such file; choose a LAS or LAZ file.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/_dem_input.py"/>
     <source>Band</source>
     <translation type="unfinished"></translation>
@@ -125,122 +280,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Attributes</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>CRS of the points</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Classes</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Classes are numbers separated by commas, such as 2,9.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Gaps at the outline only</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Height of points at one place</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Instead of the CRS in the file, or where it has none.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Keep all other dimensions</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Keep points of noise</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Keep what is not transformed (GPS time, flags, ...) in the pyramid, so that the reconstructed file has it too.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Keep withheld points</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>LAS, LAZ or COPC file to a reversible pyramid of TINs with details by scale</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Let points of the classes 7 and 18 be part of the surface. Otherwise they are only carried, and the reconstructed file has them.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Longest edge</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Names of further dimensions of the file, separated by commas.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 for ground and water. Empty for all points.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Other attributes</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Point cloud file</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Read with the Python package laspy, so no point cloud support in QGIS is needed.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Reading the points</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>The same for points with the withheld flag.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Triangles with a longer edge are left out, as gaps of the point cloud; in the unit of x and y, or metres for a geographic CRS. 0 for five times the spacing that 95 % of the points keep; empty to fill the convex hull.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -250,32 +290,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Triangulating {} points</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>Which height points have that share x and y; each of them comes back.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
     <source>las,laz,copc,lidar,point cloud,tin,pyramid,wavelet,multiresolution,analyze</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>{}: QGIS does not understand the CRS in the file; choose one.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/analyse_point_cloud.py"/>
-    <source>{}: there is no such file; choose a LAS or LAZ file.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1170,7 +1185,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Cells with data</source>
+    <source>Cells with data, or points</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1185,7 +1200,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fit the heights to all cells</source>
+    <source>Fit the heights to all that is given</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1205,12 +1220,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>In the unit of the CRS; empty for the grid of the DEM.</source>
+    <source>In the unit of the CRS; empty for the grid of the DEM, or the spacing of points.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Least squares: the smallest RMSE that these triangles can have. Without it the TIN is the pyramid's coarsest level as it is; where the largest error is kept small, heights are those of the cells.</source>
+    <source>Least squares: the smallest RMSE that these triangles can have. Without it the TIN is the pyramid's coarsest level as it is; where the largest error is kept small, heights are those of the input.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1225,7 +1240,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>No cell is farther above or below the TIN, in the unit of elevation.</source>
+    <source>No cell or point is farther above or below the TIN, in the unit of elevation.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1255,7 +1270,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Root mean square error over all cells, in the unit of elevation.</source>
+    <source>Root mean square error over all cells or points, in the unit of elevation.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1295,17 +1310,97 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Vertices are cells of the DEM</source>
+    <source>Vertices are points of the input</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>at all cells</source>
+    <source>at all cells or points</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>simplify,thin,generalise,generalize,decimate,reduce,tin,tin from dem,mesh,mesh from dem,dem to mesh,raster to tin,2dm,dem,level of detail,lod</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>Gives the TIN of a number of vertices, or the TIN that is accurate enough, of the ground points of a LAS, LAZ or COPC file, and the points of the file that carry it: few on plains, many on banks. Give one of three: the number of vertices, the largest error, or the root mean square error; with none, a twentieth of the points stay.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>LAS (*.las);;LAZ (*.laz)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>LAS, LAZ or COPC file to the TIN of a size or an accuracy, and fewer points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>Largest error of the Delaunay TIN of the thinned points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>Measuring the Delaunay TIN of the points that stay</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>Points of the thinned point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>RMSE of the Delaunay TIN of the thinned points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>Simplify point cloud to TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>The points that are the vertices of the TIN, exactly as they were, with all their dimensions. Triangulated again they give other triangles: where a largest error is asked for, points are added until those keep it too. LAZ needs the Python package lazrs.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>Thinned point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>simplify,thin,thin point cloud,generalise,generalize,decimate,reduce,las,laz,lidar,point cloud,ground,tin,tin from point cloud,mesh,2dm,dtm,level of detail,lod</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
+    <source>the thinned point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/thin_point_cloud.py"/>
+    <source>LAS, LAZ or COPC file to those of its points that carry its surface best</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/thin_point_cloud.py"/>
+    <source>Thin point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/thin_point_cloud.py"/>
+    <source>Writes the points of a LAS, LAZ or COPC file that carry its surface best, exactly as they were, with all their dimensions: few on plains, many on banks. The ground is taken where the file tells it. Give one of three: the number of points, the largest error, or the root mean square error of the surface through them; with none, a twentieth stays.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/thin_point_cloud.py"/>
+    <source>thin,thinning,decimate,subsample,reduce,simplify,generalise,generalize,las,laz,lidar,point cloud,ground,key points,model key points</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1730,6 +1825,16 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
+    <source>LAS files; the zip of the plugin brings a copy</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>LAZ and COPC files</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
     <source>Terrain Wavelets needs Python {} or later, and this QGIS runs Python {}; install a newer QGIS.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1740,17 +1845,27 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
-    <source>in Terminal: {}</source>
+    <source>in Terminal</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
-    <source>in a terminal: {}</source>
+    <source>in a terminal</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
-    <source>in the OSGeo4W Shell (Start menu, QGIS): {}</source>
+    <source>in the OSGeo4W Shell (Start menu, QGIS)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>meshes as DXF</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>meshes as GLB</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1759,8 +1874,28 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>points and breaklines are triangulated four times as fast</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>two to seven times as fast</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/ui/layer_styles.py"/>
     <source>level {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/options_page.py"/>
+    <source>installed</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/options_page.py"/>
+    <source>{}: {}; missing, install it {}</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -45,8 +45,23 @@ SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
 TRIMESH = Package("trimesh", "trimesh")
 EZDXF = Package("ezdxf", "ezdxf")
 
+PYTHONCDT = Package("pythoncdt", "PythonCDT")
+
 #: What every algorithm needs.
 ALWAYS = (NUMPY, SCIPY)
+
+
+def optional_packages() -> list[tuple[Package, str]]:
+    """Return what works better, or at all, with a package: the options page shows it."""
+    return [
+        (NUMBA, tr("two to seven times as fast")),
+        (PYTHONCDT, tr("points and breaklines are triangulated four times as fast")),
+        (LASPY, tr("LAS files; the zip of the plugin brings a copy")),
+        (LAZRS, tr("LAZ and COPC files")),
+        (SCIKIT_LEARN, tr("Cluster details")),
+        (TRIMESH, tr("meshes as GLB")),
+        (EZDXF, tr("meshes as DXF")),
+    ]
 
 
 def named(pip: str) -> Package:
@@ -65,20 +80,22 @@ def missing(packages: Iterable[Package]) -> list[Package]:
 
 
 def remedy(packages: Sequence[Package]) -> str:
-    """Return the exact command that installs ``packages`` for the Python that QGIS runs here."""
+    """Return how ``packages`` are installed for the Python that QGIS runs here: where, and what."""
+    return "{}: {}".format(*place_and_command(packages))
+
+
+def place_and_command(packages: Sequence[Package]) -> tuple[str, str]:
+    """Return where the exact command is given that installs ``packages`` here, and the command."""
     names = _quoted(package.pip for package in packages)
     if Path("/.flatpak-info").exists():
-        return tr("in a terminal: {}").format(
-            f"flatpak run --command=pip3 org.qgis.qgis install --user {names}"
-        )
+        command = f"flatpak run --command=pip3 org.qgis.qgis install --user {names}"
+        return tr("in a terminal"), command
     if sys.platform == "win32":
-        return tr("in the OSGeo4W Shell (Start menu, QGIS): {}").format(
-            f"python -m pip install {names}"
-        )
+        return tr("in the OSGeo4W Shell (Start menu, QGIS)"), f"python -m pip install {names}"
     if sys.platform == "darwin":
         interpreter = Path(sys.prefix) / "bin" / "python3"
-        return tr("in Terminal: {}").format(f'"{interpreter}" -m pip install --user {names}')
-    return tr("in a terminal: {}").format(_linux_command(packages))
+        return tr("in Terminal"), f'"{interpreter}" -m pip install --user {names}'
+    return tr("in a terminal"), _linux_command(packages)
 
 
 def _linux_command(packages: Sequence[Package]) -> str:
@@ -136,6 +153,17 @@ def slow_without_numba() -> str | None:
         "The Python package numba is missing: the work takes two to seven times as long, with the "
         "same result. Install it {} and start QGIS again."
     ).format(remedy([NUMBA]))
+
+
+def with_remedy(text: str) -> str:
+    """Return a message with the command of this platform where it asks for a package by name."""
+    asked = [
+        package
+        for package, _ in optional_packages()
+        if f"install {package.module}" in text or f"'pip install {package.module}" in text
+    ]
+    absent = missing(asked)
+    return f"{text} ({remedy(absent)})" if absent else text
 
 
 def _dotted(version: Iterable[int]) -> str:

@@ -14,6 +14,10 @@ MODELS = {
     "dem_to_hydraulic_mesh": "DEM and breaklines to hydraulic mesh",
     "point_cloud_to_dem": "Point cloud to filtered DEM",
     "dem_to_denoised_dem": "DEM to denoised DEM and report",
+    "point_cloud_to_contours": "Point cloud to ground TIN and contours",
+    "dem_to_simplified_cog": "DEM to simplified COG",
+    "dems_to_change_by_scale": "Two DEMs to change by scale",
+    "dem_to_landform_clusters": "DEM to landform clusters",
 }
 
 
@@ -165,6 +169,86 @@ def test_point_cloud_to_filtered_dem(run_model, tmp_path):
     # Without trees, and nearer to the terrain than the points were.
     assert np.isfinite(error).sum() > 2000
     assert np.sqrt(np.nanmean(error**2)) < 0.25
+
+
+def test_point_cloud_to_contours(run_model, tmp_path):
+    pytest.importorskip("laspy")
+    plan = np.random.default_rng(3).random((4000, 2)) * 400
+    is_tree = np.arange(4000) % 5 == 0
+    z = 100 + plan[:, 0] / 20 + np.where(is_tree, 30.0, 0.0)  # a plane: straight contours
+    xyz = np.column_stack([700000 + plan[:, 0], 6600000 + plan[:, 1], z])
+    points = write_las(tmp_path / "points.las", xyz, classification=np.where(is_tree, 5, 2))
+    _, layers = run_model(
+        "point_cloud_to_contours",
+        {
+            "INPUT": points,
+            "INTERVAL": 5.0,
+            "ground_tin": "TEMPORARY_OUTPUT",
+            "ground_dem": "TEMPORARY_OUTPUT",
+            "contours": str(tmp_path / "contours.gpkg"),
+        },
+    )
+    assert layers["Ground TIN"].featureCount() < 50  # a plane needs few triangles
+    (contours,) = [layer for name, layer in layers.items() if name.lower() == "contours"]
+    assert {f["ELEV"] for f in contours.getFeatures()} == {105.0, 110.0, 115.0}
+    for feature in contours.getFeatures():
+        x = np.array([vertex.x() for vertex in feature.geometry().vertices()])
+        assert np.abs(x - 700000 - 20 * (feature["ELEV"] - 100)).max() < 4
+
+
+def test_dem_to_simplified_cog(run_model, dem, tmp_path):
+    from osgeo import gdal
+
+    results, _ = run_model(
+        "dem_to_simplified_cog",
+        {"INPUT": dem, "MAX_ERROR": 2.0, "simplified_dem": str(tmp_path / "cog.tif")},
+    )
+    dataset = gdal.Open(results["simplified_dem"])
+    assert dataset.GetMetadata("IMAGE_STRUCTURE")["LAYOUT"] == "COG"
+    values = np.frombuffer(dataset.ReadRaster(), "f4").reshape(60, 80)
+    largest = np.abs(values - hills()).max()
+    stated = dataset.GetMetadata()
+    assert 0.5 < largest <= 2.0 + 1e-3
+    assert float(stated["MAX_ERROR"]) == pytest.approx(largest, abs=1e-3)
+    assert 0 < float(stated["RMSE"]) < largest
+
+
+def test_dems_to_change_by_scale(run_model, tmp_path):
+    before = hills(80, 80).astype("float32")
+    rows, columns = np.mgrid[:80, :80]
+    slide = 6.0 * np.exp(-((rows - 40) ** 2 + (columns - 40) ** 2) / 200)
+    noise = np.random.default_rng(4).normal(0, 0.5, (80, 80))
+    after = (before + slide + noise).astype("float32")
+    results, layers = run_model(
+        "dems_to_change_by_scale",
+        {
+            "BEFORE": write_raster(tmp_path / "a.tif", before),
+            "AFTER": write_raster(tmp_path / "b.tif", after),
+            "SMALLEST_SIZE": 45.0,  # of cells of 10 m
+            "change": str(tmp_path / "change.tif"),
+            "change_by_level": str(tmp_path / "levels.tif"),
+        },
+    )
+    change = np.frombuffer(read_raster(results["change"])["bytes"], "f4").reshape(80, 80)
+    assert np.std(change - slide) < 0.5 * np.std(noise)
+    assert abs(change[40, 40] - 6.0) < 1.0
+    assert layers["Change by level"].bandCount() == 12
+
+
+def test_dem_to_landform_clusters(run_model, tmp_path):
+    pytest.importorskip("sklearn")
+    rough = np.random.default_rng(1).normal(size=(80, 100)) * 3.0
+    rough[:, :50] = 0
+    x = np.arange(100.0)
+    dem = write_raster(tmp_path / "dem.tif", (x + rough).astype("float32"))
+    results, layers = run_model(
+        "dem_to_landform_clusters",
+        {"INPUT": dem, "COUNT": 2, "landforms": str(tmp_path / "landforms.tif")},
+    )
+    labels = read_raster(results["landforms"])
+    values = np.frombuffer(labels["bytes"], "u1").reshape(labels["shape"])
+    assert np.mean(values[:, 55:]) - np.mean(values[:, :45]) == pytest.approx(1, abs=0.1)
+    assert layers["Landforms"].renderer().type() == "paletted"
 
 
 class TestParametersLeftOut:

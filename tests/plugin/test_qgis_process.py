@@ -233,3 +233,27 @@ def test_a_point_cloud_through_qgis_process(qgis_process, data_folder, tmp_path,
     for dimension in ("X", "Y", "Z", "classification", "intensity", "gps_time"):
         if dimension in before.point_format.dimension_names:
             assert np.array_equal(before[dimension], after[dimension]), dimension
+
+
+@pytest.mark.parametrize(
+    ("model", "inputs", "output", "suffix"),
+    [
+        ("dem_to_simplified_cog", ("INPUT",), "simplified_dem", ".tif"),
+        ("dems_to_change_by_scale", ("BEFORE", "AFTER"), "change", ".tif"),
+        ("dem_to_landform_clusters", ("INPUT",), "landforms", ".tif"),
+    ],
+)
+def test_a_model_from_the_command_line_on_its_defaults(
+    qgis_process, tmp_path, model, inputs, output, suffix
+):
+    if model == "dem_to_landform_clusters":
+        pytest.importorskip("sklearn")
+    parameters = {
+        name: write_raster(
+            tmp_path / f"{name}.tif", hills(50, 50, 40.0 + 5 * k).astype("float32"), cell=8.0
+        )
+        for k, name in enumerate(inputs)
+    }
+    path = tmp_path / f"result{suffix}"
+    qgis_process(model, {**parameters, output: str(path)})
+    assert path.stat().st_size > 0

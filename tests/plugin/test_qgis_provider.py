@@ -3,6 +3,8 @@
 import pytest
 
 IDS = {
+    "simplifypointcloud",
+    "thinpointcloud",
     "analysedem",
     "analysepointcloud",
     "analysetin",
@@ -34,3 +36,34 @@ def test_help_tells_of_every_parameter(provider, algorithm_id):
     for parameter in algorithm.parameterDefinitions():
         assert parameter.help(), parameter.name()
         assert parameter.help() in text
+
+
+def test_the_options_tell_of_each_package_and_store_nothing(provider, monkeypatch):
+    from processing.core.ProcessingConfig import ProcessingConfig
+    from qgis.core import QgsSettings
+    from terrain_wavelets.plugin.ui import dependencies, options_page
+
+    page = ProcessingConfig.getSettings()["Terrain Wavelets"]
+    assert len(page) == len(dependencies.optional_packages())
+    keys = {setting.name for setting in page}
+    ProcessingConfig.readSettings()
+    for setting in page:
+        setting.save()
+    assert not [key for key in QgsSettings().allKeys() if key.split("/")[-1] in keys]
+    monkeypatch.setattr(dependencies, "missing", list)
+    rows = options_page.rows()
+    assert all("missing, install it" in description for _, description, _ in rows)
+    commands = {key.removeprefix("TERRAIN_WAVELETS_"): text for key, _, text in rows}
+    assert commands["LAZRS"].endswith("lazrs")
+    assert "'laspy[lazrs]'" in commands["LASPY"]
+
+
+def test_a_refusal_for_want_of_numba_has_the_command_of_this_platform(monkeypatch, qgis):
+    from terrain_wavelets.plugin.ui import dependencies
+
+    text = "fit_nnls over 60000 items is too slow without numba; install numba, or choose another."
+    monkeypatch.setattr(dependencies, "missing", list)
+    told = dependencies.with_remedy(text)
+    assert told.startswith(text)
+    assert dependencies.remedy([dependencies.NUMBA]) in told
+    assert dependencies.with_remedy("choose another level.") == "choose another level."

@@ -6,7 +6,7 @@ and the mesh the points again is the matter of `wavelet_gis.model.cloud_origin`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -103,6 +103,24 @@ class PointCloud:
     def coordinates(self) -> NDArray[np.float64]:
         """Return x, y, z of the points in the file's units, ``(n_points, 3)``."""
         return self.integers * self.scales + self.offsets
+
+    def subset(self, rows: NDArray[np.int64]) -> PointCloud:
+        """Return the cloud of some of its points, each as it came, in the order of the file.
+
+        Parameters
+        ----------
+        rows : (n,) int64
+            Which points.
+        """
+        rows = np.sort(rows)
+        return replace(
+            self,
+            integers=self.integers[rows],
+            attributes=tuple(replace(a, values=a.values[rows]) for a in self.attributes),
+            carried={name: values[rows] for name, values in self.carried.items()},
+            aside=None,
+            is_altered=True,
+        )
 
     def columns(self) -> list[NDArray[Any]]:
         """Return what must come back exactly: X, Y, Z and the attributes as stored."""

@@ -6,16 +6,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Unpack
 
-from wavelet_core import Progress
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core import analyse as core_analyse
 from wavelet_core.errors import OptionError
+from wavelet_core.mesh.location import Cover, cover_of, surface_errors
+from wavelet_core.progress import report
 from wavelet_core.refinement.finish import finished
 from wavelet_core.refinement.refine import Round
+from wavelet_gis.model.cloud import PointCloud
+from wavelet_gis.model.cloud_origin import CloudOrigin
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected
 from wavelet_gis.progress import Clock, part_of
 from wavelet_gis.workflows.analyse import Analysis
-from wavelet_gis.workflows.extract import Surface, measured
+from wavelet_gis.workflows.extract import Surface, SurfaceErrors, measured
 from wavelet_gis.workflows.options import (
     WaveletOptions,
     core_options,
@@ -73,6 +80,49 @@ class Simplified(Surface):
         return Analysis(
             geo.with_errors(progress, finest, terrain.points_for_errors()) if measure else geo
         )
+
+    def thinned(
+        self, max_error: float | None = None, progress: Progress | None = None
+    ) -> tuple[PointCloud, SurfaceErrors]:
+        """Return the points of a cloud that carry its surface, each as it came, and their errors.
+
+        They are the vertices of the TIN. Whoever triangulates them again gets other triangles,
+        those of Delaunay, which may be farther off: the errors are measured on these.
+
+        Parameters
+        ----------
+        max_error : float, optional
+            Points are added, where the error is largest, until no vertex of the input is farther
+            from the Delaunay triangles; in the input's unit of z.
+        progress : callable, optional
+            Called with a fraction in [0, 1]; the work stops when it returns False.
+
+        Raises
+        ------
+        OptionError
+            What was simplified is no point cloud.
+        Cancelled
+            ``progress`` returned False.
+        """
+        assert self.terrain is not None
+        cloud, origin = self.terrain.original, self.terrain.origin
+        if not (isinstance(cloud, PointCloud) and isinstance(origin, CloudOrigin)):
+            raise OptionError(
+                "{name}: this is no point cloud, so there are no points to thin.",
+                name=self.terrain.name,
+            )
+        points, scale = self.terrain.mesh.vertices, self.terrain.frame.z_scale
+        ids = self.vertex_ids
+        while True:
+            mesh = TriangleMesh.from_points(points[ids])
+            cover = cover_of(mesh, points[:, :2])
+            report(progress, 1.0 - len(self.vertex_ids) / len(ids))
+            worst = _worst_of_faces(mesh, points, cover, max_error and max_error * scale)
+            if len(worst) == 0:
+                break
+            ids = np.union1d(ids, worst)
+        errors = measured(mesh, points, scale, cover)
+        return cloud.subset(origin.vertex_rows()[ids]), errors
 
     def figures(self) -> dict[str, Any]:
         """Return sizes and errors as JSON-able values."""
@@ -208,3 +258,20 @@ def _without_update(keywords: dict[str, Any]) -> dict[str, Any]:
             "update",
         )
     return {**keywords, "update": "none"}
+
+
+def _worst_of_faces(
+    mesh: TriangleMesh, points: NDArray[np.float64], cover: Cover, tolerance: float | None
+) -> NDArray[np.int64]:
+    """Return the point of each face that is farthest off, where that is more than a tolerance."""
+    if tolerance is None:
+        return np.empty(0, dtype=np.int64)
+    off = np.abs(surface_errors(mesh, points, cover)[cover.point])
+    # Rounding of a vertex's own height must not add it again.
+    is_off = off > max(tolerance, 1e-9 * float(np.ptp(points[:, 2])))
+    face, point, off = cover.face[is_off], cover.point[is_off], off[is_off]
+    order = np.lexsort((point, -off, face))
+    is_first = np.ones(len(order), dtype=bool)
+    is_first[1:] = face[order[1:]] != face[order[:-1]]
+    worst: NDArray[np.int64] = point[order[is_first]]
+    return worst

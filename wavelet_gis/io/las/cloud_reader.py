@@ -67,6 +67,7 @@ def read_cloud(
     *,
     attributes: Sequence[str] = (),
     classes: Sequence[int] | None = None,
+    ground_first: bool = False,
     carry: bool = True,
     keep_noise: bool = False,
     keep_withheld: bool = False,
@@ -83,6 +84,9 @@ def read_cloud(
         for each component.
     classes : sequence of int, optional
         Only points of these classes; the ground for ``hag`` is that of the whole file.
+    ground_first : bool
+        Without `classes`, take the last returns of the ground (class 2) if there are some; the
+        result names its classes then.
     carry : bool
         Keep the other dimensions too, to be given back untouched.
     keep_noise : bool
@@ -128,6 +132,9 @@ def read_cloud(
     ]
     _check_names(name, lifted)
     chosen = _chosen(name, points, classes)
+    if ground_first and classes is None:
+        chosen = _ground(points)
+        classes = None if chosen is None else (GROUND_CLASS,)
     aside = _aside(name, points, chosen, classes, keep_noise, keep_withheld)
     integers = np.empty((np.count_nonzero(chosen) if chosen is not None else len(array), 3), "i4")
     for k, axis in enumerate("XYZ"):
@@ -433,6 +440,13 @@ def _chosen(
             f"are {present}."
         )
     return chosen
+
+
+def _ground(points: PackedPointRecord) -> NDArray[np.bool_] | None:
+    """Return which points are last returns of the ground; None where too few for a surface are."""
+    is_last = np.array(points["return_number"]) >= np.array(points["number_of_returns"])
+    is_ground: NDArray[np.bool_] = is_last & (np.array(points["classification"]) == GROUND_CLASS)
+    return is_ground if np.count_nonzero(is_ground) >= 3 else None
 
 
 def _select(values: NDArray[Any], chosen: NDArray[np.bool_] | None) -> NDArray[Any]:

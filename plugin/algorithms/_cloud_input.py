@@ -1,0 +1,235 @@
+"""The parameters by which algorithms take a point cloud file, and its reading."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, ClassVar
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+
+from ..base import TerrainWaveletsAlgorithm
+from ..parameters.analysis_options import (
+    add_weights_parameter,
+    vertical_unit,
+    weight_options,
+    weights_refusal,
+)
+from ..parameters.choices import choice, duplicate_rules
+from ..parameters.request import Request
+from ..ui import dependencies
+from ..ui.enums import REAL_NUMBER
+from ..ui.exceptions import QgsProcessingException
+from ..ui.translation import tr
+
+if TYPE_CHECKING:
+    from wavelet_gis.crs.frame import Georeference
+    from wavelet_gis.model.cloud import PointCloud
+    from wavelet_gis.model.terrain import Terrain
+    from wavelet_gis.workflows.options import WaveletOptions
+
+    from ..qgis_io.patience import Work
+
+#: Dimensions that are offered by name; any other can be written in.
+ATTRIBUTES = ("classification", "hag", "intensity", "rgb", "return_number", "number_of_returns")
+
+
+class CloudInput(TerrainWaveletsAlgorithm):
+    """Base of the algorithms that start from a LAS, LAZ or COPC file."""
+
+    #: Whether the points of the ground alone are taken where no classes are named and it has some.
+    TAKES_GROUND: ClassVar[bool] = False
+
+    def add_cloud_parameters(self) -> None:
+        """Declare INPUT and what is taken of it."""
+        self.add(
+            QgsProcessingParameterFile(
+                "INPUT",
+                tr("Point cloud file"),
+                fileFilter=tr("LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)"),
+            ),
+            tr("Read by the plugin itself, so no point cloud support in QGIS is needed."),
+        )
+        self.add(
+            QgsProcessingParameterEnum(
+                "ATTRIBUTES",
+                tr("Attributes"),
+                options=list(ATTRIBUTES),
+                allowMultiple=True,
+                defaultValue=[],
+                optional=True,
+                usesStaticStrings=True,
+            ),
+            tr(
+                "What is transformed along with the elevation. <i>hag</i> is the height above the "
+                "TIN of the ground points (class 2), in the unit of elevation."
+            ),
+        )
+        self.add(
+            QgsProcessingParameterString("OTHER_ATTRIBUTES", tr("Other attributes"), optional=True),
+            tr("Names of further dimensions of the file, separated by commas."),
+            advanced=True,
+        )
+        add_weights_parameter(self)
+        self.add(
+            QgsProcessingParameterString("CLASSES", tr("Classes"), optional=True),
+            tr(
+                "Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 "
+                "for ground and water. Empty for those of the ground, if the file tells them, else "
+                "for all."
+            )
+            if self.TAKES_GROUND
+            else tr(
+                "Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 "
+                "for ground and water. Empty for all points."
+            ),
+        )
+        self.add(
+            QgsProcessingParameterBoolean("CARRY", tr("Keep all other dimensions"), True),
+            tr(
+                "Keep what is not transformed (GPS time, flags, ...) in the pyramid, so that the "
+                "reconstructed file has it too."
+            ),
+            advanced=True,
+        )
+        self._add_surface_parameters()
+        self.add(
+            QgsProcessingParameterCrs("CRS", tr("CRS of the points"), optional=True),
+            tr("Instead of the CRS in the file, or where it has none."),
+            advanced=True,
+        )
+
+    def _add_surface_parameters(self) -> None:
+        self.add(
+            QgsProcessingParameterBoolean("KEEP_NOISE", tr("Keep points of noise"), False),
+            tr(
+                "Let points of the classes 7 and 18 be part of the surface. Otherwise they are "
+                "only carried, and the reconstructed file has them."
+            ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterBoolean("KEEP_WITHHELD", tr("Keep withheld points"), False),
+            tr("The same for points with the withheld flag."),
+            advanced=True,
+        )
+        self.add(
+            choice("DUPLICATES", tr("Height of points at one place"), duplicate_rules()),
+            tr("Which height points have that share x and y; each of them comes back."),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "MAX_EDGE", tr("Longest edge"), REAL_NUMBER, None, optional=True, minValue=0.0
+            ),
+            tr(
+                "Triangles with a longer edge are left out, as gaps of the point cloud; in the "
+                "unit of x and y, or metres for a geographic CRS. 0 for five times the spacing "
+                "that 95 % of the points keep; empty to fill the convex hull."
+            ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterBoolean("CONCAVE", tr("Gaps at the outline only"), False),
+            tr("Leave out only what such edges open to the outside; gaps inside stay closed."),
+            advanced=True,
+        )
+
+    def refusal(self, request: Request) -> str | None:
+        """Refuse a file that is not there, and classes or weights that are no numbers."""
+        path = request.input_file("INPUT")
+        if not os.path.isfile(path):
+            return tr("{}: there is no such file; choose a LAS or LAZ file.").format(path)
+        try:
+            request.whole_numbers("CLASSES")
+        except ValueError:
+            return tr("Classes are numbers separated by commas, such as 2,9.")
+        return weights_refusal(request)
+
+    def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
+        """Return what reading the file needs; without PythonCDT, SciPy triangulates."""
+        return dependencies.for_las(request.input_file("INPUT"))
+
+    def take_layers(self, request: Request) -> None:
+        """Take nothing: a file lives in no thread."""
+
+    def terrain(self, request: Request) -> Terrain:
+        """Return the terrain in the file."""
+        from wavelet_gis.io.las import read_cloud
+        from wavelet_gis.model.terrain import terrain_of_cloud
+
+        from ..qgis_io.crs_and_progress import coordinate_system
+
+        path = request.input_file("INPUT")
+        request.stage(tr("Reading the points"))
+        attributes = [*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")]
+        classes, carry = request.whole_numbers("CLASSES") or None, request.flag("CARRY")
+        takes_ground = self.TAKES_GROUND and classes is None
+        keep_noise, keep_withheld = request.flag("KEEP_NOISE"), request.flag("KEEP_WITHHELD")
+
+        def read(work: Work) -> tuple[PointCloud, Georeference]:
+            return read_cloud(
+                path,
+                attributes=attributes,
+                classes=classes,
+                ground_first=takes_ground,
+                carry=carry,
+                keep_noise=keep_noise,
+                keep_withheld=keep_withheld,
+            )
+
+        cloud, place = request.computed(read, 0.0, 0.05)
+        if takes_ground:
+            request.say(
+                tr("Taken: the {} points of the ground (class 2), of {}").format(
+                    cloud.n_points, cloud.n_in_file
+                )
+                if cloud.classes
+                else tr("Taken: all points, since none is classified as ground (class 2)")
+            )
+        crs = request.crs("CRS")
+        if not crs.isValid() and place.wkt:
+            crs = QgsCoordinateReferenceSystem.fromWkt(place.wkt)
+            if not crs.isValid():
+                raise QgsProcessingException(
+                    tr("{}: QGIS does not understand the CRS in the file; choose one.").format(path)
+                )
+        max_edge = request.number("MAX_EDGE")
+        request.stage(tr("Triangulating {} points").format(cloud.n_points))
+        system, unit = coordinate_system(crs), vertical_unit(request) or place.vertical_unit
+        duplicates = request.text("DUPLICATES") or None
+        concave = request.flag("CONCAVE")
+
+        def triangulate(work: Work) -> Terrain:
+            return terrain_of_cloud(
+                path,
+                cloud,
+                system,
+                unit,
+                fault=place.fault,
+                duplicates=duplicates,
+                max_edge="auto" if max_edge == 0 else max_edge,
+                concave=concave,
+            )
+
+        return request.computed(triangulate, 0.05, 0.15)
+
+    def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:
+        """Return the weights of the attributes."""
+        from wavelet_gis.io.las import ALIASES
+        from wavelet_gis.model.cloud import PointCloud
+
+        assert isinstance(terrain.original, PointCloud)
+        names_of_dimension: dict[str, list[str]] = {}
+        for attribute in terrain.original.attributes:
+            names_of_dimension.setdefault(attribute.dimension, []).append(attribute.name)
+        names = terrain.mesh.attribute_names
+        groups = {**ALIASES, **names_of_dimension}
+        return {"attribute_weights": weight_options(request, names, groups)}
