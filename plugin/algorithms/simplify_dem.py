@@ -102,7 +102,13 @@ class SimplifyDem(DemInput):
         )
         self.add(
             QgsProcessingParameterNumber(
-                "REFINE", tr("Rounds of refinement"), WHOLE_NUMBER, None, True, 0
+                "REFINE",
+                tr("Rounds of refinement"),
+                WHOLE_NUMBER,
+                # edges are turned away from Delaunay's, to which points alone go back
+                None if self.IS_TIN_BY_DEFAULT else 0,
+                True,
+                0,
             ),
             tr(
                 "Each moves, replaces and reconnects vertices for a smaller error, or for fewer "
