@@ -291,6 +291,7 @@ class FilterLevels(PyramidAlgorithm):
         filtered = request.computed(compute, 0.05, 0.7)
         for line in filtered.changes:
             request.say(line)
+        request.figures = request.computed(lambda work: _figures(filtered), 0.7, 0.7)
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:
@@ -305,8 +306,7 @@ class FilterLevels(PyramidAlgorithm):
         results.update(self._difference(request, filtered))
         if not results:
             raise nothing_written(before)
-        figures = request.computed(lambda work: _figures(filtered), 0.95, 1.0)
-        return {**figures, **results}
+        return {**request.figures, **results}
 
     def _difference(self, request: Request, filtered: Filtered) -> Values:
         from ..qgis_io.raster_writer import write_dem

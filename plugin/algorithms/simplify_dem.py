@@ -212,6 +212,7 @@ class SimplifyDem(DemInput):
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,
             "N_LEVELS": simplified.geo.pyramid.n_levels,
         }
+        request.figures = figures
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:

@@ -348,6 +348,8 @@ class TestEveryOutputOpensStyled:
         for layer in layers.values():
             assert layer.metadata().abstract().startswith("Extract level: ")
             assert "<i>" not in layer.metadata().abstract()
+            assert "MAX_ERROR_SURFACE = " in layer.metadata().abstract()
+            assert "suffix chooses" not in layer.metadata().abstract()
             (command,) = layer.metadata().history()
             assert command.startswith('processing.run("terrainwavelets:extractlevel"')
             assert layer.metadata().crs() == layer.crs()
