@@ -5,6 +5,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from qgis_fixtures import COMMAND
@@ -105,3 +106,23 @@ def test_a_las_file_opens_in_a_qgis_without_laspy(archive, qgis_environment, tmp
     assert back.read_bytes() == Path(path).read_bytes()
     assert "missing Python package: lazrs" in texts[-1]
     assert not Path(f"{back}.laz").exists()
+
+
+def test_the_translation_in_the_zip_is_that_of_its_source(archive, qgis, tmp_path):
+    from qgis.PyQt.QtCore import QTranslator
+
+    with zipfile.ZipFile(io.BytesIO(archive)) as files:
+        path = tmp_path / "de.qm"
+        path.write_bytes(files.read(f"{TOP}plugin/i18n/terrain_wavelets_de.qm"))
+        source = ElementTree.fromstring(files.read(f"{TOP}plugin/i18n/terrain_wavelets_de.ts"))
+    translator = QTranslator()
+    assert translator.load(str(path))
+    n_seen = 0
+    for message in source.iter("message"):
+        text, expected = message.findtext("source"), message.findtext("translation")
+        if expected:
+            assert translator.translate("TerrainWavelets", text) == expected
+            n_seen += 1
+    assert n_seen > 300
+    assert translator.translate("TerrainWavelets", "Simplify DEM to TIN") != ""
+    assert translator.translate("TerrainWavelets", "no such text") == ""
