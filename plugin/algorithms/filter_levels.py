@@ -40,6 +40,7 @@ class FilterLevels(PyramidAlgorithm):
     """Pyramid to filtered pyramid and terrain."""
 
     GROUP = "reconstruction"
+    PAGE = "filtering"
 
     def name(self) -> str:
         """Return the public id."""

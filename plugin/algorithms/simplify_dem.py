@@ -40,6 +40,7 @@ class SimplifyDem(DemInput):
     """DEM to TIN."""
 
     GROUP = "analysis"
+    PAGE = "surface"
     #: Whether the TIN is what a first click gives.
     IS_TIN_BY_DEFAULT: ClassVar[bool] = True
 

@@ -27,7 +27,7 @@ Result = TypeVar("Result")
 LOOK, SILENCE = 0.1, 0.4
 #: Share of what is left of its part by which the bar creeps.
 CREEP = 0.01
-#: Part of the bar that the work's own fraction drives; what it does after its last word has the rest.
+#: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
 TOLD = 0.9
 
 
