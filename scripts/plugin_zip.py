@@ -3,9 +3,9 @@
     python3 scripts/plugin_zip.py [--output FILE] [--without-laspy]
 
 What is committed comes by ``git archive``; beside it go the translations, compiled, the pages of
-docs/ as HTML, and a copy of laspy, which is pure Python (BSD-2-Clause, its licence goes with it). The plugin uses that copy
-where no laspy is installed, so that LAS files open in a QGIS without further packages. It is taken
-from this Python, or fetched by pip, and is never committed.
+docs/ as HTML, and a copy of laspy, which is pure Python (BSD-2-Clause, its licence goes with it).
+The plugin uses that copy where no laspy is installed, so that LAS files open in a QGIS without
+further packages. It is taken from this Python, or fetched by pip, and is never committed.
 """
 
 from __future__ import annotations

@@ -1000,8 +1000,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Nothing would change: remove noise, list gains, or choose levels or sizes.</source>
-    <translation>Es würde sich nichts ändern: Entfernen Sie Rauschen, nennen Sie Verstärkungen, oder wählen Sie Stufen oder Größen.</translation>
+    <source>Nothing is chosen to be changed, so noise is removed.</source>
+    <translation>Es ist nichts zu ändern gewählt, also wird Rauschen entfernt.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
@@ -1055,8 +1055,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Such as that of a laser scanner.</source>
-    <translation>Etwa das eines Laserscanners.</translation>
+    <source>Such as that of a laser scanner. Done too where nothing else is chosen below.</source>
+    <translation>Etwa das eines Laserscanners. Geschieht auch, wo unten nichts anderes gewählt ist.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
