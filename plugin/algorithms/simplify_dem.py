@@ -40,6 +40,7 @@ class SimplifyDem(DemInput):
     """DEM to TIN."""
 
     GROUP = "analysis"
+    PAGE = "surface"
     #: Whether the TIN is what a first click gives.
     IS_TIN_BY_DEFAULT: ClassVar[bool] = True
 
@@ -238,6 +239,7 @@ class SimplifyDem(DemInput):
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,
             "N_LEVELS": simplified.geo.pyramid.n_levels,
         }
+        request.figures = figures
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:

@@ -1000,7 +1000,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Nothing would change: remove noise, list gains, or choose levels or sizes.</source>
+    <source>Nothing is chosen to be changed, so noise is removed.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1055,7 +1055,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Such as that of a laser scanner.</source>
+    <source>Such as that of a laser scanner. Done too where nothing else is chosen below.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
