@@ -17,6 +17,7 @@ from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import note, warn
 
 __all__ = [
+    "ROUNDING",
     "HoldsPyramid",
     "WaveletOptions",
     "core_options",
@@ -30,7 +31,7 @@ __all__ = [
 ]
 
 #: An error that is above a limit by so much, in parts of one, is within it.
-_ROUNDING = 1e-9
+ROUNDING = 1e-9
 
 
 class WaveletOptions(TypedDict, total=False):
@@ -184,7 +185,7 @@ def warn_of_error_above(
         What was asked for.
     """
     for option, asked, found in (("max_error", max_error, largest), ("max_rms", max_rms, rms)):
-        if asked is None or found is None or found <= asked * (1.0 + _ROUNDING):
+        if asked is None or found is None or found <= asked * (1.0 + ROUNDING):
             continue
         warn(
             TerrainWarning,
