@@ -1905,6 +1905,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>
+    <source>the layer's additional nodata value</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/wording.py"/>
     <source>the layer's properties</source>
     <translation type="unfinished"></translation>
   </message>
