@@ -185,6 +185,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Unpacked by QGIS's pdal_wrench, since lazrs is missing</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1736,6 +1741,11 @@
   <message>
     <location filename="../../plugin/qgis_io/geopackage.py"/>
     <source>{}: layer {} cannot be written ({}); check the disk and the name.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/qgis_io/laz_unpacker.py"/>
+    <source>{}: QGIS's pdal_wrench cannot unpack this file ({}); get it again.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

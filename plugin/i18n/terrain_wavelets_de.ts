@@ -185,6 +185,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Unpacked by QGIS's pdal_wrench, since lazrs is missing</source>
+    <translation>Entpackt vom Programm pdal_wrench von QGIS, da lazrs fehlt</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
     <translation>Was zusammen mit der Höhe transformiert wird. &lt;i&gt;hag&lt;/i&gt; ist die Höhe über dem TIN der Bodenpunkte (Klasse 2), in der Einheit der Höhe.</translation>
   </message>
@@ -1737,6 +1742,11 @@
     <location filename="../../plugin/qgis_io/geopackage.py"/>
     <source>{}: layer {} cannot be written ({}); check the disk and the name.</source>
     <translation>{}: Layer {} kann nicht geschrieben werden ({}); prüfen Sie den Datenträger und den Namen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/qgis_io/laz_unpacker.py"/>
+    <source>{}: QGIS's pdal_wrench cannot unpack this file ({}); get it again.</source>
+    <translation>{}: Das Programm pdal_wrench von QGIS kann diese Datei nicht entpacken ({}); holen Sie sie noch einmal.</translation>
   </message>
   <message>
     <location filename="../../plugin/qgis_io/raster_reader.py"/>
