@@ -1275,12 +1275,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fit the heights to all that is given</source>
+    <source>Each moves, replaces and reconnects vertices for a smaller error, or for fewer vertices within a tolerance. Empty for as many as pay, 0 for none.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fitting the heights</source>
+    <source>Fit the heights to all that is given</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1295,12 +1295,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Height and all, also where the RMSE counts: heights are not fitted.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>In the unit of the CRS; empty for the grid of the DEM, or the spacing of points.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
+    <source>Least squares: the smallest RMSE that these triangles can have. Without it the TIN is the pyramid's coarsest level as it is; where the largest error is kept small, heights are those of the input.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1340,7 +1345,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Refining the TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Root mean square error over all cells or points, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Rounds of refinement</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1370,7 +1385,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>The reversible pyramid whose coarsest level has the triangles of the TIN.</source>
+    <source>The reversible pyramid whose coarsest level the TIN was made from.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Vertices are points of the input</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

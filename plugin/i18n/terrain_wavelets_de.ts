@@ -1275,13 +1275,13 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fit the heights to all that is given</source>
-    <translation>Die Höhen an alles Gegebene anpassen</translation>
+    <source>Each moves, replaces and reconnects vertices for a smaller error, or for fewer vertices within a tolerance. Empty for as many as pay, 0 for none.</source>
+    <translation>Jede verschiebt, ersetzt und verbindet Punkte neu, für kleinere Fehler oder, innerhalb einer Toleranz, für weniger Punkte. Leer: so viele, wie sich lohnen; 0: keine.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fitting the heights</source>
-    <translation>Anpassen der Höhen</translation>
+    <source>Fit the heights to all that is given</source>
+    <translation>Die Höhen an alles Gegebene anpassen</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
@@ -1295,13 +1295,18 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Height and all, also where the RMSE counts: heights are not fitted.</source>
+    <translation>Samt ihrer Höhe, auch wo der RMSE zählt: Höhen werden nicht ausgeglichen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>In the unit of the CRS; empty for the grid of the DEM, or the spacing of points.</source>
     <translation>In der Einheit des KBS; leer für das Gitter des DGM oder den Abstand der Punkte.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
-    <translation>Kleinste Quadrate: der kleinste RMSE, den diese Dreiecke haben können. Ohne das, und wo der größte Fehler klein gehalten wird, sind die Höhen die der gröbsten Stufe der Pyramide.</translation>
+    <source>Least squares: the smallest RMSE that these triangles can have. Without it the TIN is the pyramid's coarsest level as it is; where the largest error is kept small, heights are those of the input.</source>
+    <translation>Kleinste Quadrate: der kleinste RMSE, den diese Dreiecke haben können. Ohne das ist das TIN die gröbste Stufe der Pyramide, wie sie ist; wo der größte Fehler klein bleiben soll, sind die Höhen die der Eingabe.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
@@ -1340,8 +1345,18 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Refining the TIN</source>
+    <translation>Das TIN wird verfeinert</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Root mean square error over all cells or points, in the unit of elevation.</source>
     <translation>Mittlerer quadratischer Fehler über alle Zellen oder Punkte, in der Einheit der Höhe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Rounds of refinement</source>
+    <translation>Runden der Verfeinerung</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
@@ -1370,8 +1385,13 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>The reversible pyramid whose coarsest level has the triangles of the TIN.</source>
-    <translation>Die umkehrbare Pyramide, deren gröbste Stufe die Dreiecke des TIN hat.</translation>
+    <source>The reversible pyramid whose coarsest level the TIN was made from.</source>
+    <translation>Die umkehrbare Pyramide, aus deren gröbster Stufe das TIN entstand.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Vertices are points of the input</source>
+    <translation>Eckpunkte sind Punkte der Eingabe</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
