@@ -44,6 +44,8 @@ from .lifting.update import UPDATES
 from .mesh.triangle_mesh import TriangleMesh
 from .partition.registry import NORMS, PARTITIONS
 from .progress import Progress
+from .refinement.finish import finished
+from .refinement.refine import Refinement, Round, refine
 
 __all__ = [
     "NORMS",
@@ -65,6 +67,8 @@ __all__ = [
     "Progress",
     "Pyramid",
     "PyramidError",
+    "Refinement",
+    "Round",
     "Signature",
     "SlowFallbackWarning",
     "Step",
@@ -83,6 +87,7 @@ __all__ = [
     "detail_shape",
     "energy_signature",
     "estimate_noise",
+    "finished",
     "fitted",
     "heights_above_lows",
     "joined_levels",
@@ -91,6 +96,7 @@ __all__ = [
     "mesh_of_size",
     "metrics",
     "plain_features",
+    "refine",
     "relifted",
     "scale_features",
     "surface_shape",

@@ -28,8 +28,8 @@ class LevelErrors(NamedTuple):
     rmse_surface, max_error_surface : float
         Vertical distance of all input vertices from the level's surface, in the unit of z.
     n_uncovered : int
-        Input vertices that lie on no face of the level (none with signal "z", but for the
-        isolated ones).
+        Input points that lie on no face of the level and at no isolated vertex (none with signal
+        "z").
     """
 
     level: int
@@ -120,17 +120,13 @@ def _from_analysis(
     meshes = iter(pyramid) if len(merged) else repeat(None)
     rows = []
     for level, (figures, mesh) in enumerate(zip(pyramid.measured, meshes, strict=False)):
-        squared, largest, n_uncovered = (
-            figures.squared_errors,
-            figures.largest_error,
-            figures.n_lone,
-        )
+        squared, largest, n_uncovered = figures.squared_errors, figures.largest_error, 0
         if mesh is not None:
             errors = surface_errors(mesh, merged)
             covered = errors[np.isfinite(errors)]
             squared += float((covered**2).sum())
             largest = max(largest, float(np.abs(covered).max(initial=0.0)))
-            n_uncovered += len(errors) - len(covered)
+            n_uncovered = len(errors) - len(covered)
         relative = float((figures.squared_changes / scale**2).sum()) / figures.n_vertices
         rows.append(
             LevelErrors(

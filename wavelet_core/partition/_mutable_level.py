@@ -81,7 +81,6 @@ class LevelFigures(NamedTuple):
     """Sizes and errors of a level.
 
     n_vertices, n_faces : int
-    n_lone : int, vertices without a face, which no surface covers
     squared_errors : float, sum of the squared height errors of all input vertices
     largest_error : float, the largest of them
     squared_changes : (c,) float64, of each weighted column the sum of the squared differences of
@@ -90,7 +89,6 @@ class LevelFigures(NamedTuple):
 
     n_vertices: int
     n_faces: int
-    n_lone: int
     squared_errors: float
     largest_error: float
     squared_changes: FloatArray
@@ -203,7 +201,6 @@ class SurfaceLevel:
         return LevelFigures(
             self.n_vertices,
             int(np.count_nonzero(self._faces.lives)),
-            int(np.count_nonzero(lives & (self._mesh.outgoing < 0))),
             self.squared_errors(),
             self.largest_error(),
             (changes**2).sum(axis=0),
