@@ -42,13 +42,16 @@ from .lifting.spacings import level_spacings
 from .lifting.step import FilterPair, Step
 from .lifting.update import UPDATES
 from .mesh.triangle_mesh import TriangleMesh
+from .partition.orderings import COSTS, QUADRICS
 from .partition.registry import NORMS, PARTITIONS
 from .progress import Progress
 
 __all__ = [
+    "COSTS",
     "NORMS",
     "PARTITIONS",
     "PREDICTIONS",
+    "QUADRICS",
     "SHAPE_NAMES",
     "SIGNALS",
     "STAYS",
