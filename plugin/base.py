@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from qgis.core import QgsProcessingAlgorithm
 from qgis.PyQt.QtGui import QIcon
 
-from .packages import ICON, install_finder
+from .packages import ICON, PLUGIN_FOLDER, install_finder
 from .parameters.request import Request
 from .ui import dependencies
 from .ui.enums import ADVANCED
@@ -41,6 +41,8 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
 
     #: Id of the group in the toolbox.
     GROUP: ClassVar[str]
+    #: Page of the help that tells of it.
+    PAGE: ClassVar[str] = "qgis"
     #: Packages needed beyond NumPy and SciPy.
     PACKAGES: ClassVar[tuple[dependencies.Package, ...]] = ()
     #: What is being run, as Python takes it; for the metadata of its outputs.
@@ -90,6 +92,11 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
             lines += [f"<li>{html.escape(o.description())} ({o.name()})</li>" for o in figures]
             lines.append("</ul>")
         return "\n".join(lines)
+
+    def helpUrl(self) -> str:
+        """Return the page that the zip brings; none where this is no zip."""
+        path = PLUGIN_FOLDER / "help" / f"{self.PAGE}.html"
+        return path.as_uri() if path.is_file() else ""
 
     def initAlgorithm(self, configuration: Values | None = None) -> None:
         """Declare parameters and outputs."""

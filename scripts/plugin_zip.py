@@ -2,10 +2,10 @@
 
     python3 scripts/plugin_zip.py [--output FILE] [--without-laspy]
 
-What is committed comes by ``git archive``; beside it go the translations, compiled, and a copy of
-laspy, which is pure Python (BSD-2-Clause, its licence goes with it). The plugin uses that copy
-where no laspy is installed, so that LAS files open in a QGIS without further packages. It is taken
-from this Python, or fetched by pip, and is never committed.
+What is committed comes by ``git archive``; beside it go the translations, compiled, the pages of
+docs/ as HTML, and a copy of laspy, which is pure Python (BSD-2-Clause, its licence goes with it).
+The plugin uses that copy where no laspy is installed, so that LAS files open in a QGIS without
+further packages. It is taken from this Python, or fetched by pip, and is never committed.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import tempfile
 import zipfile
 from pathlib import Path
 
+from help_pages import page
 from translations import compiled, translated
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -36,12 +37,15 @@ EPOCH = (2020, 1, 1, 0, 0, 0)
 
 def committed() -> dict[str, bytes]:
     """Return the files of the last commit that are part of the plugin, by path."""
-    command = ["git", "-c", f"safe.directory={ROOT}", "archive", "--format=zip", "HEAD"]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=True)
-    with zipfile.ZipFile(io.BytesIO(done.stdout)) as archive:
+    with zipfile.ZipFile(io.BytesIO(_git("archive", "--format=zip", "HEAD"))) as archive:
         return {
             info.filename: archive.read(info) for info in archive.infolist() if not info.is_dir()
         }
+
+
+def _git(*arguments: str) -> bytes:
+    command = ["git", "-c", f"safe.directory={ROOT}", *arguments]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, check=True).stdout
 
 
 def laspy() -> dict[str, bytes]:
@@ -98,6 +102,10 @@ def build(with_laspy: bool = True) -> bytes:
             messages = translated(content.decode("utf-8"))
             if messages:  # the template has none
                 files[str(path.with_suffix(".qm"))] = compiled(messages)
+    for name in _git("ls-tree", "--name-only", "HEAD", "docs/").decode().split():
+        if name.endswith(".md"):
+            text = _git("show", f"HEAD:{name}").decode("utf-8")
+            files[f"help/{Path(name).stem}.html"] = page(text).encode("utf-8")
     if with_laspy:
         files.update({f"{VENDORED}/{name}": content for name, content in laspy().items()})
     buffer = io.BytesIO()

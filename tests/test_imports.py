@@ -30,6 +30,7 @@ ROOMS = {
         "filtering",
         "features",
         "accuracy",
+        "refinement",
         "synthetic",
         "metrics",
     ),

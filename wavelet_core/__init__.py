@@ -45,6 +45,8 @@ from .mesh.triangle_mesh import TriangleMesh
 from .partition.orderings import COSTS, QUADRICS
 from .partition.registry import NORMS, PARTITIONS
 from .progress import Progress
+from .refinement.finish import finished
+from .refinement.refine import Refinement, Round, refine
 
 __all__ = [
     "COSTS",
@@ -68,6 +70,8 @@ __all__ = [
     "Progress",
     "Pyramid",
     "PyramidError",
+    "Refinement",
+    "Round",
     "Signature",
     "SlowFallbackWarning",
     "Step",
@@ -86,6 +90,7 @@ __all__ = [
     "detail_shape",
     "energy_signature",
     "estimate_noise",
+    "finished",
     "fitted",
     "heights_above_lows",
     "joined_levels",
@@ -94,6 +99,7 @@ __all__ = [
     "mesh_of_size",
     "metrics",
     "plain_features",
+    "refine",
     "relifted",
     "scale_features",
     "surface_shape",

@@ -93,7 +93,8 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         geo = analysis.geo
         log_levels(request, geo)
         save(request, geo, output, 0.75, 0.95)
-        results = {"OUTPUT": output, **figures(geo), **self.more_figures(request, geo)}
+        request.figures = {**figures(geo), **self.more_figures(request, geo)}
+        results = {"OUTPUT": output, **request.figures}
         if request.wants("COARSE_TIN"):
             results["COARSE_TIN"] = tin_output.write_level(request, "COARSE_TIN", geo, 0)
         request.feedback.setProgress(100)

@@ -44,6 +44,7 @@ ATTRIBUTES = ("classification", "hag", "intensity", "rgb", "return_number", "num
 class CloudInput(TerrainWaveletsAlgorithm):
     """Base of the algorithms that start from a LAS, LAZ or COPC file."""
 
+    PAGE = "point-clouds"
     #: Whether the points of the ground alone are taken where no classes are named and it has some.
     TAKES_GROUND: ClassVar[bool] = False
 

@@ -45,6 +45,7 @@ class ClusterDetails(PyramidAlgorithm):
     """Pyramid to clusters or classes of vertices."""
 
     GROUP = "details"
+    PAGE = "clustering"
     PACKAGES = (dependencies.SCIKIT_LEARN,)
 
     training: QgsProcessingFeatureSource | None

@@ -27,6 +27,7 @@ class DetailLayers(PyramidAlgorithm):
     """Pyramid to points with detail vectors."""
 
     GROUP = "details"
+    PAGE = "details"
 
     def name(self) -> str:
         """Return the public id."""

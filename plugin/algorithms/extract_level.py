@@ -150,9 +150,10 @@ class ExtractLevel(PyramidAlgorithm):
             0.05,
             0.6,
         )
+        request.figures = {**surface_figures(surface), "FOUND_LEVEL": surface.level}
         results = write_surface(request, surface)
         if not results:
             raise QgsProcessingException(
                 tr("No output is chosen; choose a TIN, vertices, a raster or a mesh.")
             )
-        return {**surface_figures(surface), "FOUND_LEVEL": surface.level, **results}
+        return {**request.figures, **results}

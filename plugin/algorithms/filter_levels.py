@@ -40,6 +40,7 @@ class FilterLevels(PyramidAlgorithm):
     """Pyramid to filtered pyramid and terrain."""
 
     GROUP = "reconstruction"
+    PAGE = "filtering"
 
     def name(self) -> str:
         """Return the public id."""
@@ -108,7 +109,7 @@ class FilterLevels(PyramidAlgorithm):
     def _add_noise_parameters(self) -> None:
         self.add(
             QgsProcessingParameterBoolean("DENOISE", tr("Remove noise"), False),
-            tr("Such as that of a laser scanner."),
+            tr("Such as that of a laser scanner. Done too where nothing else is chosen below."),
         )
         self.add(
             QgsProcessingParameterNumber(
@@ -234,20 +235,16 @@ class FilterLevels(PyramidAlgorithm):
         )
 
     def refusal(self, request: Request) -> str | None:
-        """Refuse when there is nothing to do, or gains that are no numbers."""
+        """Refuse gains that are no numbers, and levels beside sizes."""
         missing = super().refusal(request)
         if missing:
             return missing
         try:
-            gains = _gains(request)
+            _gains(request)
         except ValueError:
             return tr("Gains are pairs of a level and a number, such as 5 and 0.5.")
         levels = request.has("FIRST_LEVEL") or request.has("LAST_LEVEL")
-        sizes = _sizes(request)
-        flags = request.flag("DENOISE") or request.flag("DROP_COARSE")
-        if not (gains or levels or sizes or flags):
-            return tr("Nothing would change: remove noise, list gains, or choose levels or sizes.")
-        if levels and sizes:
+        if levels and _sizes(request):
             return tr("Choose levels or sizes to keep, not both.")
         return None
 
@@ -268,6 +265,9 @@ class FilterLevels(PyramidAlgorithm):
             metre = 1.0
         metres = None if sizes is None else (sizes[0] * metre, sizes[1] * metre)
         drop_coarse, denoise = request.flag("DROP_COARSE"), request.flag("DENOISE")
+        if not (gains or levels or metres or drop_coarse or denoise):
+            denoise = True
+            request.say(tr("Nothing is chosen to be changed, so noise is removed."))
         n_pyramids = request.whole("PYRAMIDS") or 0
         channels, noise_range = request.words("CHANNELS") or ["z"], _range(request)
         local_noise, outliers = request.flag("LOCAL_NOISE"), request.flag("OUTLIERS")
@@ -291,6 +291,7 @@ class FilterLevels(PyramidAlgorithm):
         filtered = request.computed(compute, 0.05, 0.7)
         for line in filtered.changes:
             request.say(line)
+        request.figures = request.computed(lambda work: _figures(filtered), 0.7, 0.7)
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:
@@ -305,8 +306,7 @@ class FilterLevels(PyramidAlgorithm):
         results.update(self._difference(request, filtered))
         if not results:
             raise nothing_written(before)
-        figures = request.computed(lambda work: _figures(filtered), 0.95, 1.0)
-        return {**figures, **results}
+        return {**request.figures, **results}
 
     def _difference(self, request: Request, filtered: Filtered) -> Values:
         from ..qgis_io.raster_writer import write_dem

@@ -17,6 +17,7 @@ class QualityReport(PyramidAlgorithm):
     """Pyramid to report."""
 
     GROUP = "quality"
+    PAGE = "report"
 
     def name(self) -> str:
         """Return the public id."""

@@ -40,6 +40,7 @@ class SimplifyDem(DemInput):
     """DEM to TIN."""
 
     GROUP = "analysis"
+    PAGE = "surface"
     #: Whether the TIN is what a first click gives.
     IS_TIN_BY_DEFAULT: ClassVar[bool] = True
 
@@ -94,10 +95,33 @@ class SimplifyDem(DemInput):
         self.add(
             QgsProcessingParameterBoolean("FIT", tr("Fit the heights to all that is given"), True),
             tr(
-                "Least squares: the smallest RMSE that these triangles can have. Without it, and "
-                "where the largest error is kept small, the heights are those of the pyramid's "
-                "coarsest level."
+                "Least squares: the smallest RMSE that these triangles can have. Without it the "
+                "TIN is the pyramid's coarsest level as it is; where the largest error is kept "
+                "small, heights are those of the input."
             ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "REFINE",
+                tr("Rounds of refinement"),
+                WHOLE_NUMBER,
+                # edges are turned away from Delaunay's, to which points alone go back
+                None if self.IS_TIN_BY_DEFAULT else 0,
+                True,
+                0,
+            ),
+            tr(
+                "Each moves, replaces and reconnects vertices for a smaller error, or for fewer "
+                "vertices within a tolerance. Empty for as many as pay, 0 for none."
+            ),
+            advanced=True,
+        )
+        self.add(
+            QgsProcessingParameterBoolean(
+                "KEEP_POINTS", tr("Vertices are points of the input"), False
+            ),
+            tr("Height and all, also where the RMSE counts: heights are not fitted."),
             advanced=True,
         )
         self.add(
@@ -137,7 +161,7 @@ class SimplifyDem(DemInput):
                 optional=True,
                 createByDefault=False,
             ),
-            tr("The reversible pyramid whose coarsest level has the triangles of the TIN."),
+            tr("The reversible pyramid whose coarsest level the TIN was made from."),
             advanced=True,
         )
         self.add_more_outputs()
@@ -183,11 +207,12 @@ class SimplifyDem(DemInput):
         terrain = self.terrain(request)
         stages = {
             "simplify": tr("Simplifying (the first run also compiles, up to half a minute)"),
-            "fit": tr("Fitting the heights"),
+            "fit": tr("Refining the TIN"),
             "errors": tr("Measuring the errors"),
         }
         vertices, max_error = _vertices(request, terrain), request.number("MAX_ERROR")
         max_rms, fit = request.number("RMSE"), request.flag("FIT")
+        refine, keep_points = request.whole("REFINE"), request.flag("KEEP_POINTS")
         options: WaveletOptions = {
             **design_options(request),
             **self.more_options(request, terrain),
@@ -201,6 +226,8 @@ class SimplifyDem(DemInput):
                 max_error=max_error,
                 max_rms=max_rms,
                 fit=fit,
+                refine=refine,
+                keep_points=keep_points,
                 progress=work.progress,
                 on_stage=lambda name: tell(stages[name]),
                 **options,
@@ -212,6 +239,7 @@ class SimplifyDem(DemInput):
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,
             "N_LEVELS": simplified.geo.pyramid.n_levels,
         }
+        request.figures = figures
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:

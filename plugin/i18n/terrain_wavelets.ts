@@ -1000,7 +1000,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Nothing would change: remove noise, list gains, or choose levels or sizes.</source>
+    <source>Nothing is chosen to be changed, so noise is removed.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1055,7 +1055,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
-    <source>Such as that of a laser scanner.</source>
+    <source>Such as that of a laser scanner. Done too where nothing else is chosen below.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1195,12 +1195,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fit the heights to all that is given</source>
+    <source>Each moves, replaces and reconnects vertices for a smaller error, or for fewer vertices within a tolerance. Empty for as many as pay, 0 for none.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Fitting the heights</source>
+    <source>Fit the heights to all that is given</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1215,12 +1215,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Height and all, also where the RMSE counts: heights are not fitted.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>In the unit of the CRS; empty for the grid of the DEM, or the spacing of points.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Least squares: the smallest RMSE that these triangles can have. Without it, and where the largest error is kept small, the heights are those of the pyramid's coarsest level.</source>
+    <source>Least squares: the smallest RMSE that these triangles can have. Without it the TIN is the pyramid's coarsest level as it is; where the largest error is kept small, heights are those of the input.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1260,7 +1265,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Refining the TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Root mean square error over all cells or points, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Rounds of refinement</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1290,7 +1305,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>The reversible pyramid whose coarsest level has the triangles of the TIN.</source>
+    <source>The reversible pyramid whose coarsest level the TIN was made from.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/simplify_dem.py"/>
+    <source>Vertices are points of the input</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1435,6 +1455,16 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>By what the &lt;i&gt;quadric&lt;/i&gt; partition ranks. By default as the paper says.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Cost of the paper's partition</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Error kept small</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1491,6 +1521,11 @@
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Prediction filter</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Quadrics of the paper's partition</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1566,6 +1601,11 @@
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weights of attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>What becomes of the quadrics from level to level, with the &lt;i&gt;quadric&lt;/i&gt; partition. By default as the paper says.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1981,6 +2021,26 @@
   <message>
     <location filename="../../SIGNALS"/>
     <source>elevation and attributes; every level is a valid TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../QUADRICS"/>
+    <source>built anew on every level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../QUADRICS"/>
+    <source>built on the input, handed on (Eqs. 52-53)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../COSTS"/>
+    <source>the least of them, which is that of the collapse</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../COSTS"/>
+    <source>the sum over the neighbours' quadrics (Eq. 36)</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -53,6 +53,8 @@ class Request:
         self.parameters = parameters
         self.context = context
         self.feedback = feedback or QgsProcessingFeedback()
+        #: Sizes and errors of what was made, told in the metadata of every layer.
+        self.figures: dict[str, Any] = {}
 
     # What was asked for.
 
@@ -165,7 +167,13 @@ class Request:
         """
         definition = self.algorithm.parameterDefinition(name)
         help_text = "" if definition is None else definition.help()
-        abstract = f"{self.algorithm.displayName()}: {without_tags(help_text)}"
+        title = name if definition is None else definition.description()
+        # The help of a file tells what can be chosen; the first sentence of others, what it is.
+        is_layer = definition is not None and definition.type() in ("sink", "rasterDestination")
+        abstract = f"{self.algorithm.displayName()}: {title}. "
+        abstract += without_tags(help_text) if is_layer else ""
+        if self.figures:
+            abstract += "\n" + "\n".join(f"{key} = {value}" for key, value in self.figures.items())
         command = getattr(self.algorithm, "command", "")
         finish_output(self.context, destination, style, abstract=abstract, command=command)
 

@@ -27,6 +27,8 @@ Result = TypeVar("Result")
 LOOK, SILENCE = 0.1, 0.4
 #: Share of what is left of its part by which the bar creeps.
 CREEP = 0.01
+#: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
+TOLD = 0.9
 
 
 class Work:
@@ -86,8 +88,9 @@ def computed(
     while thread.is_alive():
         thread.join(LOOK)
         now = perf_counter()
-        if work.fraction > shown:
-            shown, news = min(work.fraction, 1.0), now
+        told = TOLD * min(work.fraction, 1.0)
+        if told > shown:
+            shown, news = told, now
         elif now - news > SILENCE:
             shown, news = shown + CREEP * (1.0 - shown), now
         feedback.setProgress(100.0 * (start + (stop - start) * shown))

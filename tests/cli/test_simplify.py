@@ -5,6 +5,7 @@ import pytest
 import rasterio
 from gis.samples import hills, write_las, write_tif
 
+import wavelet_gis
 from wavelet_gis.io.formats import MESH_SUFFIXES
 
 
@@ -96,3 +97,51 @@ def test_extract_gives_any_size_and_any_accuracy(done, refused, dem, tmp_path):
         error = simplified.read(1).astype(float) - original.read(1).astype(float)
     assert np.abs(error).max() <= 2.0 * (1 + 1e-5)
     refused("extract", pyramid, tmp_path / "c.ply", "--vertices", 50)
+
+
+def test_refinement_lowers_the_error_round_by_round(done, dem, tmp_path):
+    arguments = ("simplify", dem, tmp_path / "out.ply", "--vertices", 150, "--json", "--overwrite")
+    refined, plain = done(*arguments).figures, done(*arguments, "--no-refine").figures
+    assert refined["rmse"] < 0.95 * plain["rmse"]
+    assert plain["rounds"] == []
+    rmse = [row["rmse"] for row in refined["rounds"]]
+    assert rmse == sorted(rmse, reverse=True)
+    np.testing.assert_allclose(rmse[-1], refined["rmse"], rtol=1e-9)
+    assert len(done(*arguments, "--refine", 1).figures["rounds"]) == 3
+
+
+def test_the_rounds_are_printed(done, dem, tmp_path):
+    said = done("simplify", dem, tmp_path / "out.ply", "--vertices", 150, "--refine", 2).out
+    assert "as analysed" in said
+    assert "round 2" in said
+    assert "heights fitted" in said
+
+
+def test_a_tolerance_takes_fewer_vertices_with_refinement(done, dem, tmp_path):
+    arguments = ("simplify", dem, tmp_path / "out.ply", "--max-error", 0.5, "--json", "--overwrite")
+    refined, plain = done(*arguments).figures, done(*arguments, "--no-refine").figures
+    assert refined["n_vertices"] < plain["n_vertices"]
+    assert refined["max_error"] <= 0.5
+
+
+def test_kept_points_have_the_heights_of_the_input(done, dem, tmp_path):
+    output = tmp_path / "out.gpkg"
+    figures = done("simplify", dem, output, "--vertices", 150, "--keep-points", "--json").figures
+    assert figures["n_vertices"] == 150
+    tin = wavelet_gis.open(output, layer="level_00_tin").mesh
+    with rasterio.open(dem) as dataset:
+        cells = dataset.read(1)
+        rows, columns = rasterio.transform.rowcol(dataset.transform, *tin.vertices[:, :2].T)
+    np.testing.assert_allclose(tin.vertices[:, 2], cells[rows, columns], rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (("--refine", -1), "--refine is -1"),
+        (("--refine", 2, "--no-fit"), "no --no-fit"),
+        (("--keep-points", "--design", "GLMN"), "--keep-points"),
+    ],
+)
+def test_options_that_contradict_each_other_are_refused(refused, dem, tmp_path, flags, message):
+    assert message in refused("simplify", dem, tmp_path / "out.ply", "--vertices", 150, *flags)

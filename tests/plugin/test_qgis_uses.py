@@ -64,17 +64,19 @@ class TestFilter:
         assert again["EXACT"] == "no"
         assert np.array_equal(numbers(again["DEM"]), after)
 
-    def test_nothing_to_change_is_refused_before_it_starts(self, provider, pyramid):
+    def test_a_first_click_removes_noise_and_says_so(self, run, pyramid, tmp_path):
+        log = Log()
+        made = run("filterlevels", {"INPUT": pyramid, "DEM": str(tmp_path / "f.tif")}, log)
+        assert made["SIGMA"] > 0
+        assert made["RMS_CHANGE"] > 0
+        assert any("noise is removed" in line for line in log.lines)
+
+    def test_gains_that_are_no_numbers_are_refused_before_it_starts(self, provider, pyramid):
         from qgis.core import QgsProcessingContext
 
         algorithm = provider.algorithm("filterlevels").create()
-        context = QgsProcessingContext()
-        parameters = {"INPUT": pyramid, "DEM": "TEMPORARY_OUTPUT"}
-        is_fine, message = algorithm.checkParameterValues(parameters, context)
-        assert not is_fine
-        assert "Nothing would change" in message
-        parameters["GAINS"] = ["five", "x"]
-        is_fine, message = algorithm.checkParameterValues(parameters, context)
+        parameters = {"INPUT": pyramid, "DEM": "TEMPORARY_OUTPUT", "GAINS": ["five", "x"]}
+        is_fine, message = algorithm.checkParameterValues(parameters, QgsProcessingContext())
         assert not is_fine
         assert "pairs" in message
 
@@ -348,6 +350,8 @@ class TestEveryOutputOpensStyled:
         for layer in layers.values():
             assert layer.metadata().abstract().startswith("Extract level: ")
             assert "<i>" not in layer.metadata().abstract()
+            assert "MAX_ERROR_SURFACE = " in layer.metadata().abstract()
+            assert "suffix chooses" not in layer.metadata().abstract()
             (command,) = layer.metadata().history()
             assert command.startswith('processing.run("terrainwavelets:extractlevel"')
             assert layer.metadata().crs() == layer.crs()

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from qgis_fixtures import COMMAND
@@ -15,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 HIDDEN = ("numba", "pythoncdt", "laspy", "lazrs", "sklearn", "trimesh", "ezdxf", "shapely")
 TOP = "terrain_wavelets/"
 #: Suffixes of what the plugin repository takes as source.
-ALLOWED = {".py", ".svg", ".model3", ".ts", ".qm", ".md", ".txt", ".typed", ""}
+ALLOWED = {".html", ".py", ".svg", ".model3", ".ts", ".qm", ".md", ".txt", ".typed", ""}
 
 
 @pytest.fixture(scope="module")
@@ -105,3 +106,54 @@ def test_a_las_file_opens_in_a_qgis_without_laspy(archive, qgis_environment, tmp
     assert back.read_bytes() == Path(path).read_bytes()
     assert "missing Python package: lazrs" in texts[-1]
     assert not Path(f"{back}.laz").exists()
+
+
+def test_the_translation_in_the_zip_is_that_of_its_source(archive, qgis, tmp_path):
+    from qgis.PyQt.QtCore import QCoreApplication, QTranslator
+
+    with zipfile.ZipFile(io.BytesIO(archive)) as files:
+        path = tmp_path / "de.qm"
+        path.write_bytes(files.read(f"{TOP}plugin/i18n/terrain_wavelets_de.qm"))
+        source = ElementTree.fromstring(files.read(f"{TOP}plugin/i18n/terrain_wavelets_de.ts"))
+    translator = QTranslator()
+    assert translator.load(str(path))
+    wanted = {
+        message.findtext("source"): message.findtext("translation")
+        for message in source.iter("message")
+        if message.findtext("translation")
+    }
+    QCoreApplication.installTranslator(translator)
+    try:
+        found = {text: QCoreApplication.translate("TerrainWavelets", text) for text in wanted}
+        unknown = QCoreApplication.translate("TerrainWavelets", "no such text")
+    finally:
+        QCoreApplication.removeTranslator(translator)
+    assert found == wanted
+    assert found["Simplify DEM to TIN"] == "DGM zum TIN vereinfachen"
+    assert len(wanted) > 300
+    assert unknown == "no such text"
+
+
+def test_the_help_of_every_algorithm_is_a_page_of_the_zip_whose_links_lead_somewhere(
+    archive, provider
+):
+    from xml.dom import minidom
+
+    with zipfile.ZipFile(io.BytesIO(archive)) as files:
+        pages = {
+            name.removeprefix(f"{TOP}help/"): files.read(name).decode("utf-8")
+            for name in files.namelist()
+            if name.startswith(f"{TOP}help/")
+        }
+    ours = [a for a in provider.algorithms() if hasattr(a, "PAGE")]
+    assert len(ours) >= 12
+    assert {f"{algorithm.PAGE}.html" for algorithm in ours} <= set(pages)
+    for name, text in pages.items():
+        body = text.partition("<body>")[2].partition("</body>")[0]
+        document = minidom.parseString(f"<body>{body}</body>".encode())
+        assert document.getElementsByTagName("h1"), name
+        for link in document.getElementsByTagName("a"):
+            target = link.getAttribute("href").partition("#")[0]
+            assert not target or target.startswith("http") or target in pages, (name, target)
+    assert "<table>" in pages["qgis.html"]
+    assert "<pre>" in pages["qgis.html"]

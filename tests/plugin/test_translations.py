@@ -1,6 +1,7 @@
 """The template of translations holds every text of the plugin; needs no QGIS."""
 
 import importlib.util
+import re
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,27 @@ def translations():
 def test_the_template_is_up_to_date(translations):
     stored = translations.TEMPLATE.read_text(encoding="utf-8")
     assert stored == translations.template(), "run: python3 scripts/translations.py"
+
+
+def translations_of(translations):
+    paths = sorted(translations.TEMPLATE.parent.glob("terrain_wavelets_*.ts"))
+    assert paths, "there is no translation"
+    return {path.stem.rpartition("_")[2]: path.read_text(encoding="utf-8") for path in paths}
+
+
+def test_translations_are_up_to_date_and_nearly_whole(translations):
+    for language, stored in translations_of(translations).items():
+        known = translations.translated(stored)
+        assert stored == translations.template(known, language), "run scripts/translations.py"
+        n_texts = sum(map(len, translations.all_strings().values()))
+        assert len(known) >= 0.95 * n_texts, f"{language}: {n_texts - len(known)} to translate"
+
+
+def test_a_translation_keeps_what_is_filled_in_and_the_tags(translations):
+    for stored in translations_of(translations).values():
+        for text, translation in translations.translated(stored).items():
+            marks = [sorted(re.findall(r"\{[^}]*\}|<[^>]*>", t)) for t in (text, translation)]
+            assert marks[0] == marks[1], text
 
 
 def test_the_context_is_the_plugins(translations):

@@ -368,6 +368,23 @@ class _Analysis:
         report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
 
 
+def height_weights(extent: FloatArray, attribute_weights: Sequence[float]) -> FloatArray:
+    """Return what errors of z and of each attribute count for against errors of z.
+
+    Parameters
+    ----------
+    extent : (1 + n_attributes,) float64
+        Range of z and of the attributes.
+    attribute_weights : sequence of float
+        What a change across the range of each attribute counts for against one across that of z.
+    """
+    weights = np.array((1.0, *attribute_weights)) / np.where(extent > 0, extent, 1.0)
+    height = extent[0] if extent[0] > 0 else 1.0
+    weights = np.maximum(weights, LEAST_WEIGHT) * height
+    weights[0] = 1.0
+    return weights
+
+
 class _Normalisation:
     """Centre and range of the input's columns, by which cost and prediction measure."""
 
@@ -378,9 +395,7 @@ class _Normalisation:
         self._centre = low + extent / 2
         weights = np.array((1.0, 1.0, 1.0, *options.attribute_weights))
         self._factor = weights / np.where(extent > 0, extent, 1.0)
-        height = extent[2] if extent[2] > 0 else 1.0
-        self._height_weights = np.maximum(self._factor[2:], LEAST_WEIGHT) * height
-        self._height_weights[0] = 1.0
+        self._height_weights = height_weights(extent[2:], options.attribute_weights)
 
     def height_weights(self) -> FloatArray:
         """Return what errors of z and of each attribute count for against errors of z."""

@@ -220,7 +220,7 @@ def resolve_options(
         target_vertices=targets,
         max_error=largest,
         max_rms=mean,
-        attribute_weights=_weights(attribute_weights, n_attributes),
+        attribute_weights=checked_weights(attribute_weights, n_attributes),
         bending_weight=_or(1.0, _number("bending_weight", bending_weight)),
         quadrics=of_quadrics.name,
         cost=of_cost.name,
@@ -296,7 +296,7 @@ def _fraction(
     return fraction
 
 
-def _weights(weights: Sequence[float] | None, n_attributes: int) -> tuple[float, ...]:
+def checked_weights(weights: Sequence[float] | None, n_attributes: int) -> tuple[float, ...]:
     if weights is None:
         return (1.0,) * n_attributes
     numbers = tuple(_as_float(weight) for weight in weights)

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from wavelet_core import Progress, TriangleMesh
 from wavelet_core import analyse as core_analyse
-from wavelet_core.accuracy.fitted_heights import fitted
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import Cover, cover_of, surface_errors
 from wavelet_core.progress import report
+from wavelet_core.refinement.finish import finished
+from wavelet_core.refinement.refine import Round
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.cloud_origin import CloudOrigin
 from wavelet_gis.model.terrain import Terrain
@@ -44,13 +45,17 @@ class Simplified(Surface):
         What was simplified.
     is_fitted : bool
         Whether the heights are fitted to all input vertices by least squares; otherwise they are
-        those of the pyramid's coarsest level.
+        those of the pyramid's coarsest level or, after a refinement, of the input.
+    rounds : tuple of Round
+        What each round of the refinement led to, in the input's unit of z; the pyramid's coarsest
+        level first, empty where nothing was refined.
     seconds : dict of str to float
         What the parts of the work took.
     """
 
     terrain: Terrain | None = None
     is_fitted: bool = False
+    rounds: tuple[Round, ...] = ()
     seconds: dict[str, float] | None = None
 
     @property
@@ -59,7 +64,7 @@ class Simplified(Surface):
         return self.geo.notes
 
     def analysis(self, *, measure: bool = True, progress: Progress | None = None) -> Analysis:
-        """Return the reversible pyramid whose coarsest level has the triangles of this TIN.
+        """Return the reversible pyramid whose coarsest level this TIN was made from.
 
         Parameters
         ----------
@@ -127,6 +132,7 @@ class Simplified(Surface):
             **Surface.figures(self),
             "n_levels": pyramid.n_levels,
             "stopped_by": None if pyramid.stop is None else pyramid.stop.reason,
+            "rounds": [here._asdict() for here in self.rounds],
         }
 
 
@@ -137,6 +143,8 @@ def simplify(
     max_error: float | None = None,
     max_rms: float | None = None,
     fit: bool = True,
+    refine: int | None = None,
+    keep_points: bool = False,
     progress: Progress | None = None,
     on_stage: Callable[[str], None] | None = None,
     **options: Unpack[WaveletOptions],
@@ -156,12 +164,18 @@ def simplify(
         Instead: the same for the root mean square error.
     fit : bool
         Fit the heights to all input vertices by least squares where the root mean square is what
-        is kept small; a fit would spoil the largest error.
+        is kept small; a fit would spoil the largest error. Without it the TIN is the pyramid's
+        coarsest level as it is, and is not refined either.
+    refine : int, optional
+        Rounds of refinement of the TIN, 0 for none; see `wavelet_core.refine`. By default as many
+        as pay, where the partition is ``"surface"`` and vertices keep their places.
+    keep_points : bool
+        Vertices are input vertices, height and all; their heights are not fitted.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
     on_stage : callable, optional
         Called with the name of each part of the work as it begins: ``simplify``, ``fit``,
-        ``errors``.
+        ``errors``; the refinement belongs to ``fit``.
     **options
         See `wavelet_gis.workflows.options.WaveletOptions`.
 
@@ -175,42 +189,75 @@ def simplify(
     require_terrain(terrain)
     if sum(rule is not None for rule in (vertices, max_error, max_rms)) != 1:
         raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
+    if refine is not None and refine < 0:
+        raise OptionError("{0} is {given}; give 0 or more rounds.", "refine", given=refine)
+    if refine and not (fit or keep_points):
+        raise OptionError(
+            "{0} moves vertices, whose heights cannot stay those of the level; leave out {0} or "
+            "{1}, or give {2}.",
+            "refine",
+            "fit",
+            "keep_points",
+        )
+    keywords = core_options(options)
+    if keep_points:
+        keywords = _without_update(keywords)
     clock = Clock(on_stage)
     with collected() as notes:
         clock.stage("simplify")
         pyramid = core_analyse(
             terrain.mesh,
-            progress=part_of(progress, 0.0, 0.95),
+            progress=part_of(progress, 0.0, 0.6),
             **working_rules(  # type: ignore[arg-type]
                 terrain.frame, target_vertices=vertices, max_error=max_error, max_rms=max_rms
             ),
-            **core_options(options),
+            **keywords,
         )
         note_unreached_size(pyramid, vertices)
         note_moved_outline(terrain.mesh, pyramid.mesh(0), options.get("outline_tolerance"))
     clock.stage("fit")
-    mesh = pyramid.mesh(0)
-    # Fitting moves no vertex sideways, so the points are located once for both.
-    cover = cover_of(mesh, terrain.mesh.vertices[:, :2])
-    is_fitted = fit and pyramid.parameters["norm"] == "rms"
-    if is_fitted:
-        mesh = fitted(mesh, terrain.mesh, cover=cover)
+    tin = finished(
+        pyramid,
+        terrain.mesh,
+        fit=fit,
+        rounds=refine,
+        keep_points=keep_points,
+        progress=part_of(progress, 0.6, 0.95),
+    )
     clock.stage("errors")
     # Of a cloud these are all points of the surface: those merged with a vertex count too.
     points = terrain.points_for_errors()
-    known = cover if len(points) == terrain.mesh.n_vertices else None
-    errors = measured(mesh, points, terrain.frame.z_scale, known, pyramid.vertex_ids(0))
+    known = tin.cover if len(points) == terrain.mesh.n_vertices else None
+    z_scale = terrain.frame.z_scale
+    errors = measured(tin.mesh, points, z_scale, known, tin.vertex_ids)
     noted = terrain.with_notes([*terrain.notes, *notes])
     return Simplified(
         geo=noted.uncorrected(pyramid),
-        mesh=mesh,
-        vertex_ids=pyramid.vertex_ids(0),
+        mesh=tin.mesh,
+        vertex_ids=tin.vertex_ids,
         level=0,
         errors=errors,
         terrain=noted,
-        is_fitted=is_fitted,
+        is_fitted=tin.is_fitted,
+        rounds=tuple(
+            here._replace(rmse=here.rmse / z_scale, max_error=here.max_error / z_scale)
+            for here in tin.rounds
+        ),
         seconds=clock.seconds(),
     )
+
+
+def _without_update(keywords: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of an analysis whose levels keep the heights of the input."""
+    if "prediction" in keywords or keywords.get("update", "none") != "none":
+        raise OptionError(
+            "{0} keeps the heights of the input; leave out {1}, {2} and {3}, which would not.",
+            "keep_points",
+            "design",
+            "prediction",
+            "update",
+        )
+    return {**keywords, "update": "none"}
 
 
 def _worst_of_faces(

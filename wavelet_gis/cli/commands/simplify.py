@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 from wavelet_gis.cli.commands._options import (
     INPUTS,
@@ -20,6 +21,9 @@ from wavelet_gis.cli.commands._options import (
 )
 from wavelet_gis.cli.console import Console
 from wavelet_gis.cli.table_help import names_from
+
+if TYPE_CHECKING:
+    from wavelet_gis.workflows.simplify import Simplified
 
 ORDER = 50
 HELP = (
@@ -62,6 +66,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_false",
         help="keep the heights of the pyramid's level instead of fitting them to all input points",
     )
+    rounds = parser.add_mutually_exclusive_group()
+    rounds.add_argument(
+        "--refine",
+        type=int,
+        metavar="N",
+        help="rounds that move, replace and reconnect vertices; by default as many as pay",
+    )
+    rounds.add_argument(
+        "--no-refine",
+        dest="refine",
+        action="store_const",
+        const=0,
+        help="keep places and triangles of the pyramid's level",
+    )
+    parser.add_argument(
+        "--keep-points",
+        action="store_true",
+        help="vertices are input points, height and all, also where the mean square counts",
+    )
     add_surface_arguments(parser)
     add_input_arguments(parser)
     add_wavelet_arguments(parser)
@@ -86,9 +109,12 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             max_error=arguments.max_error,
             max_rms=arguments.max_rms,
             fit=arguments.fit,
+            refine=arguments.refine,
+            keep_points=arguments.keep_points,
             progress=progress,
             **{**wavelet_options(arguments), "norm": arguments.norm},
         )
+    _tell_rounds(tin, console)
     save(tin, arguments.output, overwrite=arguments.overwrite, **options)
     figures = {**tin.figures(), "seconds": round(perf_counter() - began, 3)}
     console.say(
@@ -98,3 +124,14 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
     console.figures({"output": str(arguments.output), **figures})
+
+
+def _tell_rounds(tin: Simplified, console: Console) -> None:
+    """Print what each round of the refinement led to."""
+    if not tin.rounds:
+        return
+    names = ["as analysed", *(f"round {k}" for k in range(1, len(tin.rounds)))]
+    if tin.is_fitted:
+        names[-1] = "heights fitted"
+    header = ("", "vertices", "RMSE", "largest error", "moved", "flipped", "replaced", "removed")
+    console.table(header, [(name, *here) for name, here in zip(names, tin.rounds, strict=True)])

@@ -1,0 +1,1 @@
+"""Coarse TINs bettered in rounds: places, edges and heights, with as many vertices."""

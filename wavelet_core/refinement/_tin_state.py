@@ -1,0 +1,382 @@
+"""A coarse TIN that changes in place, and which input points lie in each of its faces."""
+
+from __future__ import annotations
+
+import copy
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._kernels._jit import run_in_ranges
+from .._kernels.connectivity import fill_stars
+from .._kernels.half_edges import HalfEdges, find_outgoing, find_twins
+from .._kernels.refine_flip import flip_edges, gains_of_flips
+from .._kernels.refine_move import move_vertices, propose_moves
+from .._kernels.refine_replace import (
+    insert_vertices,
+    list_corners,
+    list_stars,
+    propose_insertions,
+    propose_removals,
+    remove_vertices,
+)
+from .._kernels.refine_tin import (
+    Aim,
+    Points,
+    Tin,
+    colour_vertices,
+    copy_lists,
+    count_star_points,
+    sum_face_errors,
+    take_in_order,
+)
+from .._validate import FloatArray, IntArray
+
+#: Vertices with more neighbours than this are not taken out: they claim too much of the TIN.
+MAX_REMOVED_RING = 15
+#: The pool has room for so many times the points before it is put in order anew.
+ROOM = 3
+
+IndexArray = NDArray[np.int32]
+
+
+class FaceErrors(NamedTuple):
+    """Of each face: what its errors count for, the sum of squared height errors, their largest."""
+
+    error: FloatArray
+    squared_z: FloatArray
+    largest: FloatArray
+
+
+class _Removals(NamedTuple):
+    """Vertices that may go, onto which place of their ring, at what cost; most points of a star."""
+
+    vertex: IndexArray
+    target: IndexArray
+    cost: FloatArray
+    needs: IndexArray
+    capacity: int
+
+
+class _Insertions(NamedTuple):
+    """Points that may come, in which face or on which of its half-edges, how high, at what gain."""
+
+    face: IndexArray
+    point: IndexArray
+    on_edge: IndexArray
+    height: FloatArray
+    gain: FloatArray
+
+
+class TinState:
+    """A TIN in the making.
+
+    Each pass works on parts that have nothing in common, chosen in an order that depends on the
+    TIN alone; the kernels say what it does to each.
+
+    Parameters
+    ----------
+    plan : (n_points, 2) float64
+        x and y of the input points, about a local origin.
+    columns : (n_points, n_channels) float64
+        Their heights and attributes, weighted.
+    heights : (n_vertices, n_channels) float64
+        Those of the TIN's vertices.
+    faces : (n_faces, 3) int32
+    vertex_ids : (n_vertices,) int64
+        The points that the vertices lie on.
+    face_of : (n_points,) int64
+        The face of each point, -1 for none.
+    locked : (n_vertices,) bool
+    aim : Aim
+    """
+
+    def __init__(
+        self,
+        plan: FloatArray,
+        columns: FloatArray,
+        heights: FloatArray,
+        faces: IndexArray,
+        vertex_ids: IntArray,
+        face_of: IntArray,
+        locked: NDArray[np.bool_],
+        aim: Aim,
+    ) -> None:
+        mesh, n_fans = _half_edges(faces, len(vertex_ids))
+        # where two fans meet, a walk sees one of them only
+        held = locked | (n_fans != 1)
+        x, y = (np.ascontiguousarray(column) for column in plan.T)
+        self.tin = Tin(
+            mesh, x[vertex_ids], y[vertex_ids], heights.copy(), vertex_ids.astype(np.int32),
+            held, held.copy(),
+        )  # fmt: skip
+        inside = np.flatnonzero(face_of >= 0)
+        listed = inside[np.argsort(face_of[inside], kind="stable")]
+        count = np.bincount(face_of[inside], minlength=len(faces)).astype(np.int64)
+        pool = np.empty(ROOM * len(listed), dtype=np.int32)
+        pool[: len(listed)] = listed
+        self.points = Points(x, y, columns, np.cumsum(count) - count, count, pool)
+        self.aim = aim
+        self._n_used = len(listed)
+        self._key = _scattered(len(vertex_ids))
+        self._lives = np.ones(len(vertex_ids), dtype=bool)
+
+    @property
+    def n_vertices(self) -> int:
+        """How many vertices there are now."""
+        return int(np.count_nonzero(self._lives))
+
+    def snapshot(self) -> TinState:
+        """Return a copy to go back to; lists in place are never written over."""
+        twin = copy.copy(self)
+        mesh = HalfEdges._make(array.copy() for array in self.tin.mesh)
+        twin.tin = Tin._make([mesh, *(array.copy() for array in self.tin[1:])])
+        twin.points = self.points._replace(
+            first=self.points.first.copy(), n_points=self.points.n_points.copy()
+        )
+        twin._lives = self._lives.copy()
+        return twin
+
+    # -- what there is ---------------------------------------------------------------------------
+
+    def face_errors(self) -> FaceErrors:
+        """Return the errors of all faces."""
+        errors = FaceErrors(*(np.empty(len(self.points.first)) for _ in range(3)))
+        run_in_ranges(
+            sum_face_errors, len(self.points.first), self.tin, self.points, self.aim, *errors
+        )
+        return errors
+
+    def faces(self) -> tuple[IntArray, IntArray, IntArray]:
+        """Return the slots of the vertices and of the faces, and the faces by the former."""
+        slots = np.flatnonzero(self._lives)
+        slots = slots[np.argsort(self.tin.point[slots], kind="stable")]
+        position = np.full(len(self._lives), -1, dtype=np.int64)
+        position[slots] = np.arange(len(slots))
+        corners = self.tin.mesh.origin.reshape(-1, 3)
+        kept = np.flatnonzero(corners[:, 0] >= 0)
+        return slots, kept, position[corners[kept]]
+
+    def listed_points(self, kept: IntArray) -> tuple[IntArray, IntArray]:
+        """Return the points of the faces ``kept``, and in which of those each lies."""
+        count = self.points.n_points[kept]
+        face = np.repeat(np.arange(len(kept)), count)
+        ends = np.cumsum(count)
+        place = np.arange(len(face)) + np.repeat(self.points.first[kept] - ends + count, count)
+        return self.points.pool[place].astype(np.int64), face
+
+    # -- places and heights ----------------------------------------------------------------------
+
+    def relocate(self) -> int:
+        """Move each vertex to the best place near it, and its height; return how many moved."""
+        mesh = self.tin.mesh
+        alive = np.flatnonzero((mesh.outgoing >= 0) & ~self.tin.is_locked).astype(np.int32)
+        colour = np.full(len(mesh.outgoing), -1, dtype=np.int8)
+        colour_vertices(alive[np.argsort(self._key[alive], kind="stable")], mesh, colour)
+        return sum(
+            self._relocate(np.flatnonzero(colour == c).astype(np.int32))
+            for c in range(int(colour.max(initial=-1)) + 1)
+        )
+
+    def _relocate(self, chosen: IndexArray) -> int:
+        n = len(chosen)
+        counts = self._star_points(chosen)
+        capacity = int(counts.max(initial=0))
+        to, gain = np.empty(n, dtype=np.int32), np.empty(n)
+        shift = np.empty((n, self.tin.z.shape[1]))
+        run_in_ranges(
+            propose_moves, n, chosen, self.tin, self.points, self.aim, capacity, to, shift, gain
+        )
+        moves = to >= 0
+        base = self._room_for(np.where(moves, counts, 0))
+        run_in_ranges(move_vertices, n, chosen, to, shift, base, self.tin, self.points, capacity)
+        return int(np.count_nonzero(moves))
+
+    def _star_points(self, chosen: IndexArray) -> IntArray:
+        counts = np.empty(len(chosen), dtype=np.int64)
+        run_in_ranges(count_star_points, len(chosen), chosen, self.tin, self.points, counts)
+        return counts
+
+    # -- edges -----------------------------------------------------------------------------------
+
+    def flip(self, n_passes: int) -> int:
+        """Turn edges that lie better the other way, the best first; return how many."""
+        mesh = self.tin.mesh
+        half_edges = np.flatnonzero(mesh.twin > np.arange(len(mesh.twin))).astype(np.int32)
+        gains = np.zeros(len(mesh.twin))
+        n_flipped = 0
+        for _ in range(n_passes):
+            gain = np.empty(len(half_edges))
+            run_in_ranges(
+                gains_of_flips, len(half_edges), half_edges, self.tin, self.points, self.aim,
+                self.face_errors().error, gain,
+            )  # fmt: skip
+            gains[half_edges] = gain
+            chosen = self._apart(np.flatnonzero(gains > 0.0).astype(np.int32), gains)
+            if len(chosen) == 0:
+                break
+            faces = np.column_stack([chosen // 3, mesh.twin[chosen] // 3])
+            base = self._room_for(self.points.n_points[faces].sum(axis=1))
+            run_in_ranges(flip_edges, len(chosen), chosen, base, self.tin, self.points)
+            n_flipped += len(chosen)
+            around = (3 * faces.reshape(-1, 1) + np.arange(3)).ravel()
+            beyond = mesh.twin[around]
+            gains[around] = 0.0
+            gains[beyond[beyond >= 0]] = 0.0
+            lower = np.minimum(around, beyond)
+            half_edges = np.unique(lower[lower >= 0]).astype(np.int32)
+        return n_flipped
+
+    def _apart(self, half_edges: IndexArray, gains: FloatArray) -> IndexArray:
+        """Return edges whose quadrangles have no vertex in common."""
+        mesh = self.tin.mesh
+        other = mesh.twin[half_edges]
+        corners = (half_edges, other, _before(half_edges), _before(other))
+        needs = np.column_stack([mesh.origin[corner] for corner in corners])
+        return half_edges[self._first(np.argsort(-gains[half_edges], kind="stable"), needs)]
+
+    def _first(self, order: IntArray, needs: IndexArray) -> NDArray[np.bool_]:
+        """Return which rows get all the vertices that they need."""
+        wins = np.zeros(len(needs), dtype=bool)
+        is_taken = np.zeros(len(self._lives), dtype=bool)
+        take_in_order(order, np.ascontiguousarray(needs), is_taken, wins)
+        return wins
+
+    # -- vertices that go, and that come ---------------------------------------------------------
+
+    def replace(self, most: int, ratio: float) -> int:
+        """Take out the vertices that help least, and put as many where they help more.
+
+        The k-th cheapest makes room for the k-th best, at most ``most`` of them, while the one
+        costs less than ``ratio`` times what the other gains; those whose surroundings meet wait.
+        """
+        wanted = self._insertions()
+        most = min(most, len(wanted.gain))
+        if most == 0:
+            return 0
+        by_gain = np.argsort(-wanted.gain, kind="stable")[:most]
+        spare = self._removals(ratio * float(wanted.gain[by_gain[0]]), with_outline=False)
+        by_cost = np.argsort(spare.cost, kind="stable")[:most]
+        n = min(len(by_cost), len(by_gain))
+        pays = spare.cost[by_cost[:n]] < ratio * wanted.gain[by_gain[:n]]
+        n = int(np.count_nonzero(pays))  # the one rises, the other falls
+        outs, ins = by_cost[:n], by_gain[:n]
+        corners = np.full((n, spare.needs.shape[1]), -1, dtype=np.int32)
+        list_corners(0, n, wanted.face[ins], wanted.on_edge[ins], self.tin.mesh, corners)
+        order = np.arange(2 * n).reshape(2, n).T.ravel()  # in turns
+        wins = self._first(order, np.vstack([spare.needs[outs], corners]))
+        outs, ins = outs[wins[:n]], ins[wins[n:]]
+        n = min(len(outs), len(ins))
+        outs, ins = outs[:n], ins[:n]
+        vertex = spare.vertex[outs]
+        freed = self._remove(vertex, spare.target[outs], spare.capacity)
+        self._insert(_Insertions._make(array[ins] for array in wanted), vertex, freed)
+        return n
+
+    def thin(self, budget: float = np.inf) -> int:
+        """Take out vertices, the cheapest first; return how many.
+
+        Their costs sum to at most ``budget``; no tolerance of the aim is broken.
+        """
+        spare = self._removals(np.inf, with_outline=True)
+        order = np.argsort(spare.cost, kind="stable")
+        # what could be had if none stood in another's way: dearer ones wait for the next pass
+        n = np.searchsorted(np.maximum.accumulate(np.cumsum(spare.cost[order])), budget, "right")
+        wins = self._first(order[:n], spare.needs)
+        order = np.sort(order[wins[order]])
+        vertex = spare.vertex[order]
+        self._remove(vertex, spare.target[order], spare.capacity)
+        self._lives[vertex] = False
+        return len(vertex)
+
+    def _removals(self, bound: float, *, with_outline: bool) -> _Removals:
+        tin = self.tin
+        vertex = np.flatnonzero((tin.mesh.outgoing >= 0) & ~tin.is_locked).astype(np.int32)
+        counts = self._star_points(vertex)
+        capacity = int(counts.max(initial=0))
+        target, cost = np.empty(len(vertex), dtype=np.int32), np.empty(len(vertex))
+        run_in_ranges(
+            propose_removals, len(vertex), vertex, tin, self.points, self.aim,
+            self.face_errors().error, bound, capacity, with_outline, target, cost,
+        )  # fmt: skip
+        found = np.flatnonzero(target >= 0)
+        needs = np.empty((len(found), MAX_REMOVED_RING + 2), dtype=np.int32)
+        run_in_ranges(list_stars, len(found), vertex[found], tin.mesh, needs)
+        fits = needs[:, -1] < 0
+        found, needs = found[fits], needs[fits]
+        return _Removals(vertex[found], target[found], cost[found], needs, capacity)
+
+    def _insertions(self) -> _Insertions:
+        n = len(self.points.first)
+        face = np.arange(n, dtype=np.int32)
+        point, on_edge = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
+        height, gain = np.empty((n, self.tin.z.shape[1])), np.empty(n)
+        run_in_ranges(
+            propose_insertions, n, face, self.tin, self.points, self.aim, point, on_edge, height,
+            gain,
+        )  # fmt: skip
+        found = np.flatnonzero(point >= 0)
+        return _Insertions._make(array[found] for array in (face, point, on_edge, height, gain))
+
+    def _remove(self, vertex: IndexArray, target: IndexArray, capacity: int) -> IndexArray:
+        """Collapse vertices onto places of their rings; return the two faces that each frees."""
+        base = self._room_for(self._star_points(vertex))
+        freed = np.empty((len(vertex), 2), dtype=np.int32)
+        run_in_ranges(
+            remove_vertices, len(vertex), vertex, target, base, self.tin, self.points, capacity,
+            freed,
+        )  # fmt: skip
+        return freed
+
+    def _insert(self, new: _Insertions, vertex: IndexArray, free: IndexArray) -> None:
+        counts = self.points.n_points[new.face]
+        split = new.on_edge >= 0
+        counts[split] += self.points.n_points[self.tin.mesh.twin[new.on_edge[split]] // 3]
+        base = self._room_for(counts)
+        run_in_ranges(
+            insert_vertices, len(vertex), new.face, new.on_edge, new.point, new.height, vertex,
+            free, base, self.tin, self.points, int(counts.max(initial=0)),
+        )  # fmt: skip
+
+    # -- room ------------------------------------------------------------------------------------
+
+    def _room_for(self, counts: IntArray) -> IntArray:
+        """Return where in the pool there is room for lists of such lengths."""
+        total = int(counts.sum())
+        if self._n_used + total > len(self.points.pool):
+            count = self.points.n_points
+            first = np.cumsum(count) - count
+            self._n_used = int(count.sum())
+            pool = np.empty(ROOM * self._n_used + total, dtype=np.int32)
+            run_in_ranges(copy_lists, len(count), self.points, first, pool)
+            self.points = self.points._replace(first=first, pool=pool)
+        base = np.cumsum(counts) - counts + self._n_used
+        self._n_used += total
+        return base
+
+
+def _half_edges(faces: IndexArray, n_vertices: int) -> tuple[HalfEdges, NDArray[np.int8]]:
+    """Return the half-edge mesh, and how many fans of faces are around each vertex (0, 1, 2)."""
+    indptr = np.zeros(n_vertices + 1, dtype=np.int64)
+    star = np.empty(3 * len(faces), dtype=np.int32)
+    fill_stars(faces, indptr, star)
+    mesh = HalfEdges(
+        faces.ravel().copy(),
+        np.empty(3 * len(faces), dtype=np.int32),
+        np.empty(n_vertices, dtype=np.int32),
+    )
+    run_in_ranges(find_twins, len(faces), indptr, star, mesh)
+    n_fans = np.empty(n_vertices, dtype=np.int8)
+    run_in_ranges(find_outgoing, n_vertices, indptr, star, mesh, n_fans)
+    return mesh, n_fans
+
+
+def _before(half_edge: IndexArray) -> IndexArray:
+    return half_edge - 1 + 3 * (half_edge % 3 == 0)
+
+
+def _scattered(n: int) -> NDArray[np.uint32]:
+    """Return a different number for each vertex, without order."""
+    key = np.arange(n, dtype=np.uint32) * np.uint32(2654435761)
+    return (key ^ (key >> np.uint32(15))) * np.uint32(2246822519)

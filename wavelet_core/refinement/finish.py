@@ -1,0 +1,135 @@
+"""The coarsest level of a pyramid as a TIN for itself: refined, its heights fitted."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .._validate import IntArray
+from ..accuracy.fitted_heights import fitted
+from ..errors import OptionError
+from ..lifting.pyramid import Pyramid
+from ..mesh.connectivity import BOUNDARY, build_connectivity
+from ..mesh.location import Cover, cover_of
+from ..mesh.triangle_mesh import TriangleMesh
+from ..progress import Progress
+from .refine import Round, refine
+
+
+class FinishedTin(NamedTuple):
+    """A TIN that is no level of its pyramid any more.
+
+    mesh : TriangleMesh
+    vertex_ids : (n_vertices,) int64, the input vertices that its vertices lie on
+    cover : Cover, where the input vertices lie on it
+    rounds : tuple of Round, of the refinement; empty without one
+    is_fitted : bool, whether its heights are fitted to all input vertices
+    """
+
+    mesh: TriangleMesh
+    vertex_ids: IntArray
+    cover: Cover
+    rounds: tuple[Round, ...]
+    is_fitted: bool
+
+
+def finished(
+    pyramid: Pyramid,
+    original: TriangleMesh,
+    *,
+    fit: bool = True,
+    rounds: int | None = None,
+    keep_points: bool = False,
+    progress: Progress | None = None,
+) -> FinishedTin:
+    """Return the coarsest level, refined and with fitted heights where that lowers its error.
+
+    Parameters
+    ----------
+    pyramid : Pyramid
+        Its parameters say which error counts, and what the tolerance is.
+    original : TriangleMesh
+        Its input.
+    fit : bool
+        Fit the heights where the root mean square error counts. Without it, the level stays as it
+        is, unless ``keep_points`` is given.
+    rounds : int, optional
+        Of `refine`; by default as many as pay where `analyse` chose the vertices by the errors that
+        they leave (partition "surface"), and none otherwise.
+    keep_points : bool
+        Vertices are input vertices, height and all.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    OptionError
+        Rounds where heights shall stay those of the level, or where signal "xyz" has moved it.
+    Cancelled
+        ``progress`` returned False.
+
+    Notes
+    -----
+    A level that keeps a tolerance by the ``"rms"`` norm and an update has heights that are neither
+    the input's nor free to change: it stays as it is.
+    """
+    parameters = pyramid.parameters
+    mesh, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
+    is_rms, max_error = parameters["norm"] == "rms", parameters["max_error"]
+    stays = (is_rms and max_error is not None) or not (fit or keep_points)
+    if rounds and (stays or parameters["signal"] != "z"):
+        raise OptionError(
+            "{0} goes neither with fixed heights nor with {1} 'xyz'; leave one of them out.",
+            "rounds",
+            "signal",
+        )
+    locked = None if pyramid.locked is None else pyramid.locked[ids]
+    cover = cover_of(mesh, original.vertices[:, :2])
+    if rounds is None:
+        rounds = None if parameters["partition"] == "surface" else 0
+        rounds = 0 if stays or parameters["signal"] != "z" else rounds
+    if rounds != 0:
+        return _refined(pyramid, original, mesh, ids, cover, rounds, keep_points, progress)
+    if keep_points and not stays:
+        columns = np.hstack([original.vertices[ids, 2:], original.attributes[ids]])
+        vertices = np.column_stack([mesh.vertices[:, :2], columns[:, 0]])
+        mesh = TriangleMesh(vertices, mesh.faces, columns[:, 1:], mesh.attribute_names)
+    elif is_rms and not stays:
+        mesh = fitted(mesh, original, locked, cover)
+        return FinishedTin(mesh, ids, cover, (), True)
+    return FinishedTin(mesh, ids, cover, (), False)
+
+
+def _refined(
+    pyramid: Pyramid,
+    original: TriangleMesh,
+    mesh: TriangleMesh,
+    ids: IntArray,
+    cover: Cover,
+    rounds: int | None,
+    keep_points: bool,
+    progress: Progress | None,
+) -> FinishedTin:
+    parameters = pyramid.parameters
+    locked = np.zeros(len(ids), dtype=bool) if pyramid.locked is None else pyramid.locked[ids]
+    if parameters["outline_tolerance"] > 0 and parameters["max_error"] is not None:
+        # the points that the outline left outside keep the tolerance at its nearest edge
+        connectivity = build_connectivity(mesh.faces.astype(np.int32), mesh.n_vertices)
+        locked = locked | (connectivity.kind == BOUNDARY)
+    result = refine(
+        mesh,
+        original,
+        ids,
+        norm=parameters["norm"],
+        rounds=rounds,
+        keep_points=keep_points,
+        max_error=parameters["max_error"],
+        max_rms=parameters["max_rms"],
+        attribute_weights=parameters["attribute_weights"],
+        locked=locked,
+        cover=cover,
+        progress=progress,
+    )
+    is_fitted = parameters["norm"] == "rms" and not keep_points
+    return FinishedTin(result.mesh, result.vertex_ids, result.cover, result.rounds, is_fitted)

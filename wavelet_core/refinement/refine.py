@@ -1,0 +1,440 @@
+"""Refined TINs: better places, edges and heights for the vertices of a coarse TIN."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._kernels._jit import fitting_engine
+from .._kernels.refine_tin import Aim
+from .._validate import IntArray
+from ..accuracy.fitted_heights import fitted
+from ..errors import MeshError, OptionError
+from ..lifting.analyse import height_weights
+from ..lifting.options import checked_weights
+from ..mesh.location import Cover, cover_of, surface_errors
+from ..mesh.triangle_mesh import TriangleMesh
+from ..partition.registry import NORMS
+from ..progress import Progress, report
+from ._tin_state import TinState
+
+#: Rounds at most, where their number is not given. docs/surface.md has what each of them gains.
+MAX_ROUNDS = 8
+#: Rounds end with the first one that lowers the error, or the number of vertices, by less than
+#: this part.
+LEAST_GAIN = 0.005
+#: A vertex may move by so many mean distances of input points in one round.
+REACH = 3.0
+#: Share of the vertices that are replaced in one round, at most.
+REPLACED_SHARE = 0.1
+#: A vertex is replaced while that costs less than this many times what its new place gains. Both
+#: are reckoned with all others as they are, which takes the cost for too high and the gain for too
+#: low: moves and flips then better both.
+REPLACED_RATIO = 8.0
+#: Passes of flips before and after the vertices move.
+FLIP_PASSES = 4
+#: Passes that thin the TIN in one round.
+THIN_PASSES = 6
+
+
+class Round(NamedTuple):
+    """What the TIN is like after a round.
+
+    n_vertices : int
+    rmse, max_error : float, of z, over the input points that the TIN covers
+    n_moved, n_flipped, n_replaced, n_removed : int, vertices and edges that changed in it
+    """
+
+    n_vertices: int
+    rmse: float
+    max_error: float
+    n_moved: int = 0
+    n_flipped: int = 0
+    n_replaced: int = 0
+    n_removed: int = 0
+
+
+class Refinement(NamedTuple):
+    """A refined TIN.
+
+    mesh : TriangleMesh
+    vertex_ids : (n_vertices,) int64, the input vertices that its vertices lie on, ascending
+    rounds : tuple of Round, the TIN as given first, after the fit of its heights last
+    cover : Cover, where the input vertices lie on it
+    """
+
+    mesh: TriangleMesh
+    vertex_ids: IntArray
+    rounds: tuple[Round, ...]
+    cover: Cover
+
+
+def refine(
+    mesh: TriangleMesh,
+    original: TriangleMesh,
+    vertex_ids: ArrayLike,
+    *,
+    norm: str = "rms",
+    rounds: int | None = None,
+    keep_points: bool = False,
+    max_error: float | None = None,
+    max_rms: float | None = None,
+    attribute_weights: Sequence[float] | None = None,
+    locked: ArrayLike | None = None,
+    cover: Cover | None = None,
+    progress: Progress | None = None,
+) -> Refinement:
+    """Return a coarse TIN with its vertices, edges and heights where they serve best.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        A coarse TIN whose vertices lie on vertices of ``original``, such as ``pyramid.mesh(0)``.
+    original : TriangleMesh
+        What it stands for, with the same attributes; only its vertices count.
+    vertex_ids : array_like of int, shape (n_vertices,)
+        Which of them the vertices of ``mesh`` lie on, such as ``pyramid.vertex_ids(0)``.
+    norm : {"rms", "max"}
+        Keep the sum of squared errors small, with heights fitted to all input vertices; or the
+        largest error, with the heights of the input.
+    rounds : int, optional
+        How many; by default until one of them lowers the error by less than half a per cent, and
+        at most 8.
+    keep_points : bool
+        With ``"rms"``, too, each vertex is an input vertex, height and all.
+    max_error : float, optional
+        With ``"max"``: take out vertices while no input vertex is farther off than this,
+        vertically; the mesh has to keep that already.
+    max_rms : float, optional
+        With ``"rms"``: take out vertices while the root mean square error is at most this.
+    attribute_weights : sequence of float, optional
+        As for `wavelet_core.analyse`.
+    locked : array_like of bool, shape (n_vertices,), optional
+        Vertices of ``mesh`` that stay as they are. Edges between two of them stay, too.
+    cover : Cover, optional
+        What `cover_of` gives for the original's vertices on the mesh, where it is known already.
+    progress : callable, optional
+        Called with a fraction in [0, 1] between the passes; the work stops when it returns False.
+
+    Returns
+    -------
+    Refinement
+        A valid TIN that covers what the given one covers. Outlines keep their place; along a
+        straight one vertices move from input vertex to input vertex.
+
+    Raises
+    ------
+    OptionError
+        Options that contradict each other, or arrays of the wrong size.
+    MeshError
+        A face that is flipped or flat in plan.
+    Cancelled
+        ``progress`` returned False.
+
+    Notes
+    -----
+    A round (a) replaces vertices: the one that helps least is collapsed, half-edge by half-edge
+    collapse, and a point in a face of large errors becomes a vertex instead ("bad point
+    replacement", [1]_); (b) turns edges that lie better across their quadrangle ("data-dependent
+    triangulation", [2]_); (c) moves each vertex onto the best input vertex near it, whose height
+    has a closed form, and (d) turns edges again. At the end all heights are fitted at once. Each is
+    judged by all input vertices in the faces that it changes. With ``"max"`` they are judged by
+    the sum of the eighth powers of the errors, *our choice*: the largest ones count for nearly all
+    of it, and yet each that falls helps.
+
+    References
+    ----------
+    .. [1] M. D. Adams, "A flexible content-adaptive mesh-generation strategy for image
+       representation", IEEE Transactions on Image Processing 20(9), 2011.
+    .. [2] N. Dyn, D. Levin, S. Rippa, "Data dependent triangulations for piecewise linear
+       interpolation", IMA Journal of Numerical Analysis 10(1), 1990.
+    """
+    ids = _checked_ids(vertex_ids, mesh, original)
+    _require_sense(norm, rounds, max_error, max_rms)
+    if mesh.attribute_names != original.attribute_names:
+        raise OptionError(
+            "{0} has the attributes {of_mesh}, {1} {of_original}; refine a level of its own "
+            "pyramid.",
+            "mesh",
+            "original",
+            of_mesh=mesh.attribute_names,
+            of_original=original.attribute_names,
+        )
+    fixed = _checked_mask(locked, mesh)
+    areas = mesh.plan_areas
+    if len(areas) and areas.min() <= 0:
+        face = int(np.argmin(areas))
+        raise MeshError(f"face {face} is flipped or flat in plan; only a TIN can be refined.", face)
+    cover = cover_of(mesh, original.vertices[:, :2]) if cover is None else cover
+    task = _Task(
+        mesh, original, ids, fixed, cover, norm == "max", norm == "rms" and not keep_points,
+        max_error, max_rms, attribute_weights,
+    )  # fmt: skip
+    with fitting_engine(original.n_vertices):
+        work = _Work(task, progress)
+        if max_error is None and max_rms is None:
+            work.run(rounds)
+        else:
+            work.thin(rounds)
+        return work.result()
+
+
+class _Task(NamedTuple):
+    """What is asked for, checked; see `refine`."""
+
+    mesh: TriangleMesh
+    original: TriangleMesh
+    ids: IntArray
+    locked: NDArray[np.bool_]
+    cover: Cover
+    is_largest: bool
+    is_free: bool
+    max_error: float | None
+    max_rms: float | None
+    attribute_weights: Sequence[float] | None
+
+
+class _Work:
+    """The rounds, and what the TIN was like after each."""
+
+    def __init__(self, task: _Task, progress: Progress | None) -> None:
+        original, mesh, ids, cover = task.original, task.mesh, task.ids, task.cover
+        self._task, self._progress = task, progress
+        self._measured = np.hstack([original.vertices[:, 2:], original.attributes])
+        self._given = np.hstack([mesh.vertices[:, 2:], mesh.attributes])
+        heights = self._given
+        if not task.is_free:
+            heights = np.where(task.locked[:, None], heights, self._measured[ids])
+        scale, tolerance = self._scale_of(task)
+        weights = checked_weights(task.attribute_weights, original.attributes.shape[1])
+        extent = np.ptp(self._measured, axis=0)
+        self._weights = height_weights(extent, weights) / scale
+        self._n_points = max(len(cover.point), 1)
+        face_of = np.full(original.n_vertices, -1, dtype=np.int64)
+        face_of[cover.point] = cover.face
+        step = np.sqrt(mesh.plan_areas.sum() / self._n_points)
+        self._state = TinState(
+            original.vertices[:, :2] - original.vertices[:, :2].min(axis=0),
+            self._measured * self._weights,
+            heights * self._weights,
+            mesh.faces.astype(np.int32),
+            ids,
+            face_of,
+            task.locked,
+            Aim(task.is_largest, task.is_free, tolerance, float(REACH * step) ** 2),
+        )
+        self._error = np.inf
+        self.rounds: list[Round] = []
+        self._note()
+
+    @staticmethod
+    def _scale_of(task: _Task) -> tuple[float, float]:
+        """Return the unit in which eighth powers are taken, and the legal squared error in it."""
+        if task.max_error is not None:
+            scale = task.max_error or 1.0
+            return scale, (task.max_error / scale) ** 2
+        if not task.is_largest:
+            return 1.0, np.inf
+        errors = surface_errors(task.mesh, task.original.vertices, task.cover)
+        return float(np.nanmax(np.abs(errors), initial=0.0)) or 1.0, np.inf
+
+    # -- rounds ----------------------------------------------------------------------------------
+
+    def run(self, n_rounds: int | None) -> None:
+        """Lower the error with as many vertices."""
+        most = MAX_ROUNDS if n_rounds is None else n_rounds
+        least = LEAST_GAIN if n_rounds is None else 0.0
+        settles = False  # the last round replaces nothing
+        share = max(int(REPLACED_SHARE * self._state.n_vertices), 1)
+        for number in range(most):
+            before, state = self._error, self._state.snapshot()
+            is_last = settles or (number > 0 and number == most - 1)
+            n_replaced = 0
+            if self._task.is_largest:
+                largest = self.rounds[-1].max_error * self._weights[0]
+                self._state.aim = self._state.aim._replace(tolerance=float(largest) ** 2)
+            if number > 0 and not is_last:
+                n_replaced = self._state.replace(share, REPLACED_RATIO)
+            self._improve(number, most, n_replaced=n_replaced)
+            if self._error > before:
+                self._state, self._error = state, before
+                self.rounds.pop()
+                break
+            if is_last:
+                break
+            settles = self._lowered(before) <= least
+
+    def thin(self, n_rounds: int | None) -> None:
+        """Lower the number of vertices within a tolerance."""
+        most = MAX_ROUNDS if n_rounds is None else n_rounds
+        least = LEAST_GAIN if n_rounds is None else 0.0
+        for number in range(most):
+            before = self._state.n_vertices
+            n_removed = self._thin() if number > 0 else 0
+            state = self._state.snapshot()
+            self._improve(number, most, n_removed=n_removed)
+            if self._budget() < 0:  # as above
+                self._state = state
+                self.rounds.pop()
+                self._note(0, 0, 0, n_removed)
+                break
+            if number > 0 and n_removed <= least * before:
+                break
+
+    def _thin(self) -> int:
+        """Take out what the tolerance allows."""
+        n_removed = 0
+        for _ in range(THIN_PASSES):
+            budget, state = self._budget(), self._state.snapshot()
+            n_here = self._state.thin(budget) if budget > 0 else 0
+            if self._budget() < 0:  # where other channels gained what z lost
+                self._state = state
+                break
+            n_removed += n_here
+            if n_here <= LEAST_GAIN * self._state.n_vertices:
+                break
+        return n_removed
+
+    def _budget(self) -> float:
+        """Return what the sum of the squared errors of z may still grow by."""
+        if self._task.max_rms is None:
+            return np.inf
+        squared = float(self._state.face_errors().squared_z.sum())
+        return self._task.max_rms**2 * self._n_points - squared
+
+    def _improve(self, number: int, most: int, n_replaced: int = 0, n_removed: int = 0) -> None:
+        """Turn edges, move vertices, turn edges; note what the TIN is like."""
+        n_flipped = self._state.flip(FLIP_PASSES)
+        self._report((number + 0.3) / (most + 1))
+        n_moved = self._state.relocate()
+        n_flipped += self._state.flip(FLIP_PASSES)
+        self._note(n_moved, n_flipped, n_replaced, n_removed)
+        self._report((number + 1.0) / (most + 1))
+
+    def _note(self, *changes: int) -> None:
+        errors = self._state.face_errors()
+        scale = self._weights[0]
+        self._error = float(errors.error.sum())
+        self.rounds.append(
+            Round(
+                self._state.n_vertices,
+                float(np.sqrt(errors.squared_z.sum() / self._n_points) / scale),
+                float(np.sqrt(errors.largest.max(initial=0.0)) / scale),
+                *changes,
+            )
+        )
+
+    def _lowered(self, before: float) -> float:
+        """Return by what part the error has fallen, as a mean of errors, not of their powers."""
+        if before == 0.0:
+            return 0.0
+        return float(1.0 - (self._error / before) ** (1.0 / (8 if self._task.is_largest else 2)))
+
+    def _report(self, fraction: float) -> None:
+        report(self._progress, fraction, "the refinement was cancelled; nothing was kept.")
+
+    # -- what came out ---------------------------------------------------------------------------
+
+    def result(self) -> Refinement:
+        """Return the TIN, its heights fitted where they are free."""
+        task = self._task
+        slots, kept, faces = self._state.faces()
+        ids = self._state.tin.point[slots].astype(np.int64)
+        locked = task.locked[slots]
+        heights = self._state.tin.z[slots] / self._weights
+        if not task.is_free:
+            heights = self._measured[ids]
+        heights = np.where(locked[:, None], self._given[slots], heights)
+        vertices = np.column_stack([task.original.vertices[ids, :2], heights[:, 0]])
+        mesh = TriangleMesh._trusted(
+            vertices, faces, np.ascontiguousarray(heights[:, 1:]), task.mesh.attribute_names
+        )
+        cover = _cover(mesh, task.original, *self._state.listed_points(kept))
+        if task.is_free:
+            mesh = fitted(mesh, task.original, locked, cover)
+            errors = np.abs(surface_errors(mesh, task.original.vertices, cover)[cover.point])
+            rmse = float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
+            largest = float(errors.max(initial=0.0))
+            self.rounds.append(Round(mesh.n_vertices, rmse, largest))
+        return Refinement(mesh, ids, tuple(self.rounds), cover)
+
+
+def _cover(mesh: TriangleMesh, original: TriangleMesh, point: IntArray, face: IntArray) -> Cover:
+    """Return where in their faces the points lie, in the order of the points."""
+    order = np.argsort(point, kind="stable")
+    point, face = point[order], face[order]
+    a, b, c = (mesh.vertices[corner, :2] for corner in mesh.faces[face].T)
+    to_b, to_c, to_p = b - a, c - a, original.vertices[point, :2] - a
+    area = to_b[:, 0] * to_c[:, 1] - to_b[:, 1] * to_c[:, 0]
+    at_b = (to_p[:, 0] * to_c[:, 1] - to_p[:, 1] * to_c[:, 0]) / area
+    at_c = (to_b[:, 0] * to_p[:, 1] - to_b[:, 1] * to_p[:, 0]) / area
+    return Cover(point, face, at_b, at_c)
+
+
+def _checked_ids(vertex_ids: ArrayLike, mesh: TriangleMesh, original: TriangleMesh) -> IntArray:
+    ids = np.asarray(vertex_ids)
+    if ids.shape != (mesh.n_vertices,) or ids.dtype.kind not in "iu":
+        raise OptionError(
+            "{0} has shape {shape} and dtype {dtype}; give one whole number for each of {n} "
+            "vertices.",
+            "vertex_ids",
+            shape=ids.shape,
+            dtype=ids.dtype,
+            n=mesh.n_vertices,
+        )
+    ids = ids.astype(np.int64)
+    if len(ids) and (ids.min() < 0 or ids.max() >= original.n_vertices):
+        raise OptionError(
+            "{0} run from {low} to {high}; {1} has {n} vertices.",
+            "vertex_ids",
+            "original",
+            low=int(ids.min()),
+            high=int(ids.max()),
+            n=original.n_vertices,
+        )
+    apart = (mesh.vertices[:, :2] != original.vertices[ids, :2]).any(axis=1)
+    if apart.any():
+        raise OptionError(
+            "vertex {vertex} of {0} does not lie on the vertex of {1} that {2} names; give the "
+            "ids of that mesh (with signal 'xyz' vertices leave their places).",
+            "mesh",
+            "original",
+            "vertex_ids",
+            vertex=int(np.argmax(apart)),
+        )
+    return ids
+
+
+def _checked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.bool_]:
+    mask = np.zeros(mesh.n_vertices, dtype=bool) if locked is None else np.asarray(locked)
+    if mask.shape != (mesh.n_vertices,) or mask.dtype != bool:
+        raise OptionError(
+            "{0} has shape {shape}; give {due} of bool.",
+            "locked",
+            shape=mask.shape,
+            due=(mesh.n_vertices,),
+        )
+    return mask
+
+
+def _require_sense(
+    norm: str,
+    rounds: int | None,
+    max_error: float | None,
+    max_rms: float | None,
+) -> None:
+    NORMS[norm]  # refuses another name
+    if rounds is not None and rounds < 0:
+        raise OptionError("{0} is {given}; give 0 or more.", "rounds", given=rounds)
+    for name, value, due in (("max_error", max_error, "max"), ("max_rms", max_rms, "rms")):
+        if value is None:
+            continue
+        if not value >= 0:
+            raise OptionError("{0} is {given}; give 0 or more.", name, given=value)
+        if norm != due:
+            raise OptionError(
+                "{0} goes with {1} {due!r}, not {given!r}.", name, "norm", due=due, given=norm
+            )
