@@ -60,6 +60,10 @@ def _is_equal(one: Any, other: Any) -> bool:
     return type(one) is type(other) and bool(one == other)
 
 
+#: Beyond it, fourth powers (squared areas and errors) leave the range of float64.
+LARGEST_VALUE = 1e75
+
+
 def counted(n: int, singular: str, plural: str | None = None) -> str:
     """Return a number and what it counts, such as ``1,200 vertices``."""
     return f"{n:,} {singular if n == 1 else plural or singular + 's'}"
@@ -71,7 +75,7 @@ def as_vertices(vertices: ArrayLike) -> FloatArray:
     Raises
     ------
     MeshError
-        Wrong shape, or a coordinate that is NaN or infinite.
+        Wrong shape, or a coordinate that is NaN, infinite or beyond all measure.
     """
     array = np.array(vertices, dtype=np.float64, order="C")
     if array.ndim != 2 or array.shape[1] != 3:
@@ -123,7 +127,8 @@ def as_attributes(
     Raises
     ------
     MeshError
-        Shapes that do not fit, names that repeat or clash with x, y, z, or a value not finite.
+        Shapes that do not fit, names that repeat or clash with x, y, z, or a value not finite
+        or beyond all measure.
     """
     names = tuple(str(name) for name in names)
     if attributes is None:
@@ -157,5 +162,13 @@ def _require_finite(array: FloatArray, row_name: str, value_name: str) -> None:
         raise MeshError(
             f"{row_name} {row} has a {value_name} that is not a finite number "
             f"({array[row].tolist()}); drop the {row_name} or fill the value.",
+            row,
+        )
+    if len(array) and array.size and max(array.max(), -array.min()) > LARGEST_VALUE:
+        row = int(np.argmax(np.abs(array).max(axis=1)))
+        raise MeshError(
+            f"{row_name} {row}: its {value_name} is beyond {LARGEST_VALUE:g} "
+            f"({array[row].tolist()}), too large to reckon with; drop the {row_name} or put the "
+            "value right.",
             row,
         )

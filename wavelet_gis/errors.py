@@ -13,6 +13,7 @@ __all__ = [
     "CrsError",
     "CrsWarning",
     "InputFileError",
+    "LayerWarning",
     "OutputFileError",
     "PointCloudWarning",
     "RasterWarning",
@@ -53,6 +54,10 @@ class UnitWarning(TerrainWarning):
 
 class RasterWarning(TerrainWarning):
     """Something in a raster cannot be carried or is unusual."""
+
+
+class LayerWarning(TerrainWarning):
+    """Something in a vector layer is unusual."""
 
 
 class PointCloudWarning(TerrainWarning):

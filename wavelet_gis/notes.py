@@ -155,7 +155,10 @@ def _keep(entry: Note) -> None:
     notes = _current.get()
     if notes is None:
         return
-    name = entry.figures.get("name")
-    if isinstance(name, str):
-        entry = replace(entry, figures={**entry.figures, "name": os.path.basename(name)})
+    bare = {
+        key: os.path.basename(value)
+        for key in ("name", "path")
+        if isinstance(value := entry.figures.get(key), str)
+    }
+    entry = replace(entry, figures={**entry.figures, **bare})
     notes.append(entry)

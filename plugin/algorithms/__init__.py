@@ -7,6 +7,7 @@ from .analyse_dem import AnalyseDem
 from .analyse_point_cloud import AnalysePointCloud
 from .analyse_tin import AnalyseTin
 from .cluster_details import ClusterDetails
+from .contours import Contours
 from .detail_layers import DetailLayers
 from .extract_level import ExtractLevel
 from .filter_levels import FilterLevels
@@ -25,6 +26,7 @@ ALGORITHMS = (
     SimplifyPointCloud,
     ThinPointCloud,
     ExtractLevel,
+    Contours,
     Reconstruct,
     FilterLevels,
     DetailLayers,

@@ -155,8 +155,11 @@ class CloudInput(TerrainWaveletsAlgorithm):
         return weights_refusal(request)
 
     def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
-        """Return what reading the file needs; without PythonCDT, SciPy triangulates."""
-        return dependencies.for_las(request.input_file("INPUT"))
+        """Return what reading the file needs: no lazrs where QGIS itself can unpack LAZ."""
+        from ..qgis_io.laz_unpacker import unpacker
+
+        path = request.input_file("INPUT")
+        return dependencies.for_las("" if unpacker(path) else path)
 
     def take_layers(self, request: Request) -> None:
         """Take nothing: a file lives in no thread."""
@@ -167,6 +170,7 @@ class CloudInput(TerrainWaveletsAlgorithm):
         from wavelet_gis.model.terrain import terrain_of_cloud
 
         from ..qgis_io.crs_and_progress import coordinate_system
+        from ..qgis_io.laz_unpacker import as_las
 
         path = request.input_file("INPUT")
         request.stage(tr("Reading the points"))
@@ -175,9 +179,9 @@ class CloudInput(TerrainWaveletsAlgorithm):
         takes_ground = self.TAKES_GROUND and classes is None
         keep_noise, keep_withheld = request.flag("KEEP_NOISE"), request.flag("KEEP_WITHHELD")
 
-        def read(work: Work) -> tuple[PointCloud, Georeference]:
+        def read(source: str) -> tuple[PointCloud, Georeference]:
             return read_cloud(
-                path,
+                source,
                 attributes=attributes,
                 classes=classes,
                 ground_first=takes_ground,
@@ -186,7 +190,10 @@ class CloudInput(TerrainWaveletsAlgorithm):
                 keep_withheld=keep_withheld,
             )
 
-        cloud, place = request.computed(read, 0.0, 0.05)
+        with as_las(path, request.feedback) as source:
+            if source != path:
+                request.say(tr("Unpacked by QGIS's pdal_wrench, since lazrs is missing"))
+            cloud, place = request.computed(lambda work: read(source), 0.0, 0.05)
         if takes_ground:
             request.say(
                 tr("Taken: the {} points of the ground (class 2), of {}").format(

@@ -268,8 +268,9 @@ class FilterLevels(PyramidAlgorithm):
         if not (gains or levels or metres or drop_coarse or denoise):
             denoise = True
             request.say(tr("Nothing is chosen to be changed, so noise is removed."))
-        n_pyramids = request.whole("PYRAMIDS") or 0
-        channels, noise_range = request.words("CHANNELS") or ["z"], _range(request)
+        n_pyramids = (request.whole("PYRAMIDS") or 0) if denoise else None
+        channels = (request.words("CHANNELS") or ["z"]) if denoise else None
+        noise_range = _range(request)
         local_noise, outliers = request.flag("LOCAL_NOISE"), request.flag("OUTLIERS")
 
         def compute(work: Work) -> Filtered:

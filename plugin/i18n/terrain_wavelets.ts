@@ -185,6 +185,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Unpacked by QGIS's pdal_wrench, since lazrs is missing</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -624,6 +629,86 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>0 is the coarsest. Empty for the coarsest whose RMSE is at most a fifth of the interval.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Base</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Contour lines of one level of a pyramid, the smoother the coarser the level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Contours</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Contours of level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Drawing the contours</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Draws the contours of one level of a pyramid, straight in each triangle and never crossing. A coarse level has few and smooth ones. Higher ground is on the right of a line; every fifth is marked, and drawn thick.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Height that the intervals are counted from.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>In the unit of elevation; empty or 0 for a round one that gives about twenty.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Interval</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Level {}, a contour each {:g}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Lines with Z and the fields &lt;i&gt;elevation&lt;/i&gt; and &lt;i&gt;is_index&lt;/i&gt;.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Number of contours</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>The features could not be written ({}); check the disk and the name.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>contour,contours,isolines,lines,elevation,tin,generalise,generalize,smooth,level,wavelet,pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>A raster with one band for each level: the root mean square detail around each place, in the unit of elevation. It maps at which scale the terrain is rough.</source>
     <translation type="unfinished"></translation>
@@ -751,11 +836,6 @@
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Largest error</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Level</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1779,6 +1859,11 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/qgis_io/laz_unpacker.py"/>
+    <source>{}: QGIS's pdal_wrench cannot unpack this file ({}); get it again.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/qgis_io/raster_reader.py"/>
     <source>{}: band {} holds values of type {}; elevations must be real numbers.</source>
     <translation type="unfinished"></translation>
@@ -1811,11 +1896,6 @@
   <message>
     <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>Feature {}: field {} holds {}, which is no number; fill or filter it.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/qgis_io/vectors.py"/>
-    <source>The features could not be written ({}); check the disk and the name.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1921,6 +2001,11 @@
   <message>
     <location filename="../../plugin/ui/wording.py"/>
     <source>a layer reprojected before</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/wording.py"/>
+    <source>the layer's additional nodata value</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -185,6 +185,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>Unpacked by QGIS's pdal_wrench, since lazrs is missing</source>
+    <translation>Entpackt vom Programm pdal_wrench von QGIS, da lazrs fehlt</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>What is transformed along with the elevation. &lt;i&gt;hag&lt;/i&gt; is the height above the TIN of the ground points (class 2), in the unit of elevation.</source>
     <translation>Was zusammen mit der Höhe transformiert wird. &lt;i&gt;hag&lt;/i&gt; ist die Höhe über dem TIN der Bodenpunkte (Klasse 2), in der Einheit der Höhe.</translation>
   </message>
@@ -624,6 +629,86 @@
     <translation>gruppe,cluster,klassifikation,classification,größensignatur,scale signature,spektrum,spectrum,geländeform,landform,k-means,maschinelles lernen,machine learning</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>0 is the coarsest. Empty for the coarsest whose RMSE is at most a fifth of the interval.</source>
+    <translation>0 ist die gröbste. Leer für die gröbste, deren RMSE höchstens ein Fünftel des Höhenabstands ist.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Base</source>
+    <translation>Ausgangshöhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Contour lines of one level of a pyramid, the smoother the coarser the level</source>
+    <translation>Höhenlinien einer Stufe einer Pyramide, je gröber die Stufe, desto glatter</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Contours</source>
+    <translation>Höhenlinien</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Contours of level</source>
+    <translation>Höhenlinien der Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Drawing the contours</source>
+    <translation>Zeichnen der Höhenlinien</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Draws the contours of one level of a pyramid, straight in each triangle and never crossing. A coarse level has few and smooth ones. Higher ground is on the right of a line; every fifth is marked, and drawn thick.</source>
+    <translation>Zeichnet die Höhenlinien einer Stufe einer Pyramide, gerade in jedem Dreieck und ohne Kreuzungen. Eine grobe Stufe hat wenige und glatte. Höheres Gelände liegt rechts einer Linie; jede fünfte ist gekennzeichnet und dick gezeichnet.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Height that the intervals are counted from.</source>
+    <translation>Höhe, von der an die Abstände zählen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>In the unit of elevation; empty or 0 for a round one that gives about twenty.</source>
+    <translation>In der Einheit der Höhe; leer oder 0 für einen runden, der etwa zwanzig gibt.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Interval</source>
+    <translation>Höhenabstand</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Level</source>
+    <translation>Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Level {}, a contour each {:g}</source>
+    <translation>Stufe {}, eine Höhenlinie alle {:g}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Lines with Z and the fields &lt;i&gt;elevation&lt;/i&gt; and &lt;i&gt;is_index&lt;/i&gt;.</source>
+    <translation>Linien mit Z und den Feldern &lt;i&gt;elevation&lt;/i&gt; und &lt;i&gt;is_index&lt;/i&gt;.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>Number of contours</source>
+    <translation>Anzahl der Höhenlinien</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>The features could not be written ({}); check the disk and the name.</source>
+    <translation>Die Objekte konnten nicht geschrieben werden ({}); prüfen Sie den Datenträger und den Namen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/contours.py"/>
+    <source>contour,contours,isolines,lines,elevation,tin,generalise,generalize,smooth,level,wavelet,pyramid</source>
+    <translation>höhenlinien,isolinien,contour,contours,isolines,lines,elevation,tin,generalisieren,generalise,generalize,smooth,stufe,level,wavelet,pyramide,pyramid</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>A raster with one band for each level: the root mean square detail around each place, in the unit of elevation. It maps at which scale the terrain is rough.</source>
     <translation>Ein Raster mit einem Kanal je Stufe: das quadratische Mittel der Details um jeden Ort, in der Einheit der Höhe. Es zeigt, in welcher Größenordnung das Gelände rau ist.</translation>
@@ -752,11 +837,6 @@
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Largest error</source>
     <translation>Größter Fehler</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Level</source>
-    <translation>Stufe</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
@@ -1779,6 +1859,11 @@
     <translation>{}: Layer {} kann nicht geschrieben werden ({}); prüfen Sie den Datenträger und den Namen.</translation>
   </message>
   <message>
+    <location filename="../../plugin/qgis_io/laz_unpacker.py"/>
+    <source>{}: QGIS's pdal_wrench cannot unpack this file ({}); get it again.</source>
+    <translation>{}: Das Programm pdal_wrench von QGIS kann diese Datei nicht entpacken ({}); holen Sie sie noch einmal.</translation>
+  </message>
+  <message>
     <location filename="../../plugin/qgis_io/raster_reader.py"/>
     <source>{}: band {} holds values of type {}; elevations must be real numbers.</source>
     <translation>{}: Kanal {} enthält Werte des Typs {}; Höhen müssen reelle Zahlen sein.</translation>
@@ -1812,11 +1897,6 @@
     <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>Feature {}: field {} holds {}, which is no number; fill or filter it.</source>
     <translation>Objekt {}: Feld {} enthält {}, was keine Zahl ist; füllen oder filtern Sie es.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/qgis_io/vectors.py"/>
-    <source>The features could not be written ({}); check the disk and the name.</source>
-    <translation>Die Objekte konnten nicht geschrieben werden ({}); prüfen Sie den Datenträger und den Namen.</translation>
   </message>
   <message>
     <location filename="../../plugin/qgis_io/vectors.py"/>
@@ -1922,6 +2002,11 @@
     <location filename="../../plugin/ui/wording.py"/>
     <source>a layer reprojected before</source>
     <translation>einen vorher umprojizierten Layer</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/wording.py"/>
+    <source>the layer's additional nodata value</source>
+    <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>

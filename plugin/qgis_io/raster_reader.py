@@ -227,13 +227,18 @@ def _read_with_qgis(raster: RasterInput, feedback: QgsFeedback) -> Dem:
 
 
 def _with_holes(dem: Dem, raster: RasterInput) -> Dem:
-    """Mark what the layer's properties hide, and whatever is not finite, as holes."""
+    """Mark what the layer's properties hide, and whatever can be no elevation, as holes."""
+    from wavelet_gis.io.raster.nodata import tell_of_doubts, told_holes
+
     if dem.values.dtype.kind == "f":
         dem.valid[...] &= np.isfinite(dem.values)
     for low, high, has_low, has_high in raster.hidden:
         above = dem.values >= low if has_low else dem.values > low
         below = dem.values <= high if has_high else dem.values < high
         dem.valid[...] &= ~(above & below)
+    if raster.uses_nodata:
+        dem.valid[...] &= ~told_holes(dem.values, dem.valid, raster.name)
+    tell_of_doubts(dem.values[dem.valid], raster.name)
     return dem
 
 

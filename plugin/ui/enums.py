@@ -17,6 +17,7 @@ from qgis.core import (
     QgsProcessingParameterField,
     QgsProcessingParameterNumber,
     QgsProcessingUtils,
+    QgsSymbolLayer,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QMetaType, QVariant
@@ -45,13 +46,21 @@ WKT_FOR_GDAL = _wkt.WKT_PREFERRED_GDAL
 
 #: Geometry types.
 POLYGON_GEOMETRY = _geometry.PolygonGeometry
-POINT_Z, POLYGON_Z = _wkb.PointZ, _wkb.PolygonZ
+POINT_Z, LINE_Z, POLYGON_Z = _wkb.PointZ, _wkb.LineStringZ, _wkb.PolygonZ
 
 #: What a file holds that is loaded as a layer.
 MESH_LAYER = QgsProcessingUtils.LayerHint.Mesh
 
 #: Colours between those that are given.
 INTERPOLATED = _shader.Interpolated
+
+#: What of a line an expression says.
+_property: Any = QgsSymbolLayer
+LINE_WIDTH = (
+    _property.Property.StrokeWidth
+    if hasattr(_property.Property, "StrokeWidth")
+    else _property.PropertyStrokeWidth
+)
 
 #: Types of the fields of a layer.
 INTEGER: Any

@@ -13,17 +13,20 @@ from qgis.core import (
     QgsColorRampShader,
     QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
+    QgsLineSymbol,
     QgsPalettedRasterRenderer,
     QgsProcessingLayerPostProcessorInterface,
+    QgsProperty,
     QgsRasterShader,
     QgsRendererCategory,
     QgsSingleBandPseudoColorRenderer,
+    QgsSingleSymbolRenderer,
     QgsVectorLayerUtils,
 )
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument
 
-from .enums import INTERPOLATED
+from .enums import INTERPOLATED, LINE_WIDTH
 from .translation import tr
 
 if TYPE_CHECKING:
@@ -128,6 +131,14 @@ def style_energy(layer: Any) -> None:
     largest = [high for _, high in ranges]
     band = 1 + largest.index(max(largest))
     _show_band(layer, band, 0.0, largest[band - 1] or 1.0, _SEQUENTIAL)
+
+
+def style_contours(layer: Any) -> None:
+    """Draw contours in brown, those of the index thick."""
+    symbol: Any = QgsLineSymbol.createSimple({"line_color": "133,91,52", "line_width": "0.15"})
+    width = QgsProperty.fromExpression('if("is_index", 0.4, 0.15)')
+    symbol.symbolLayer(0).setDataDefinedProperty(LINE_WIDTH, width)
+    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
 
 
 def style_labels(layer: Any, name: str) -> None:

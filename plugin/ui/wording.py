@@ -58,6 +58,8 @@ def labels_of(algorithm: QgsProcessingAlgorithm) -> Callable[[str], str]:
             definition = algorithm.parameterDefinition(identifier)
             if definition is not None:
                 return f"'{definition.description()}'"
+        if parameter == "nodata":
+            return tr("the layer's additional nodata value")
         if parameter == "crs":
             return tr("the layer's properties")
         if parameter == "to_crs":

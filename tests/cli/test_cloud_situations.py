@@ -11,6 +11,7 @@ import laspy
 import numpy as np
 import pytest
 import rasterio
+from gis.samples import write_las
 
 pytestmark = pytest.mark.data
 
@@ -155,3 +156,25 @@ def test_gaps_are_left_out_of_everything(data_folder, tmp_path, done):
         assert a.shape == b.shape
         n_filled, n_open = (np.isfinite(d.read(1)).sum() for d in (a, b))
     assert n_open < 0.97 * n_filled
+
+
+def test_an_error_above_what_was_asked_at_merged_points_is_told(tmp_path, done):
+    """The stop rules look at vertices; 3 was asked for, and points were 18 off in silence."""
+    source = write_las(tmp_path / "a.las", 500)
+    told = "--max-error 3 holds at the vertices; with the points that share x and y"
+    assert told in done("analyse", source, tmp_path / "a.gpkg", "--max-error", 3).err
+    done("analyse", source, tmp_path / "b.gpkg")
+    for command, given in (("simplify", source), ("extract", tmp_path / "b.gpkg")):
+        outcome = done(command, given, tmp_path / f"{command}.ply", "--max-error", 3, "--json")
+        assert told in outcome.err
+        assert outcome.figures["max_error"] > 10
+
+
+def test_a_size_between_levels_has_its_errors_at_all_points(tmp_path, done):
+    source = write_las(tmp_path / "a.las", 500)
+    done("analyse", source, tmp_path / "b.gpkg")
+    figures = done(
+        "extract", tmp_path / "b.gpkg", tmp_path / "x.ply", "--vertices", 371, "--json"
+    ).figures
+    assert figures["n_vertices"] == 371
+    assert figures["max_error"] > 10  # at the points of one place

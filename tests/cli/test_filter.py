@@ -197,3 +197,14 @@ def test_outliers_that_pass_through_are_told(done, tmp_path):
     assert done("filter", tmp_path / "hills.gpkg", tmp_path / "c.tif", "--denoise").err == ""
     with rasterio.open(tmp_path / "b.tif") as dataset:
         assert np.std(dataset.read(1) - terrain) < 0.2
+
+
+@pytest.mark.parametrize(
+    ("flag", "value"),
+    [("--channel", "z"), ("--pyramids", "4"), ("--noise-range", "30"), ("--outliers", None)],
+)
+def test_what_tells_of_noise_is_refused_without_denoising(pyramid, refused, tmp_path, flag, value):
+    """``--channel`` and ``--pyramids`` were passed over in silence."""
+    options = [flag] if value is None else [flag, value]
+    said = refused("filter", pyramid, tmp_path / "x.tif", "--gain", "0=0", *options)
+    assert f"{flag} is for --denoise; give --denoise too" in said

@@ -1,7 +1,13 @@
 """A disk that fills up at any byte: exit 1, one line, the old file whole, nothing left behind.
 
 The limit on a file's size (``ulimit -f``) stands for the disk: it fails at the same calls, at a
-byte that the test chooses, and needs no rights.
+byte that the test chooses, and needs no rights. To try every 50 kB of each output, apart from the
+suite::
+
+    FULL_DISK_LIMITS=1000000 pytest tests/cli/test_full_disk.py --junitxml=full_disk.xml \\
+        -o junit_family=xunit1
+
+The property ``limits`` of each case tells how many.
 """
 
 import contextlib
@@ -30,13 +36,19 @@ JOBS = [
         ("extract", "dem", f"x{s}", "--level", "1")
         for s in (".gpkg", ".ply", ".2dm", ".obj", ".stl", ".glb", ".xml", ".dxf")
     ],
-    *[("details", "dem", f"x{s}") for s in (".tif", ".gpkg", ".png")],
+    *[("extract", "cloud", f"x{s}", "--level", "1") for s in (".tif", ".gpkg", ".ply")],
+    *[("details", "dem", f"x{s}") for s in (".tif", ".gpkg", ".png", ".svg", ".pdf")],
+    *[("details", "dem", f"x{s}", "--what", "shape") for s in (".tif", ".gpkg")],
     *[("cluster", "dem", f"x{s}") for s in (".tif", ".gpkg")],
     *[("filter", "dem", f"x{s}", "--gain", "0=0") for s in (".tif", ".gpkg")],
+    *[("filter", "cloud", f"x{s}", "--gain", "0=0") for s in (".las", ".laz", ".gpkg")],
     ("report", "dem", "x.html"),
     ("analyse", "input", "x.gpkg", "--levels", "1"),
-    ("simplify", "input", "x.tif", "--vertices", "300"),
-    ("simplify", "input", "x.ply", "--vertices", "300"),
+    ("analyse", "points", "x.gpkg", "--levels", "1"),
+    *[
+        ("simplify", "input", f"x{s}", "--vertices", "3000")
+        for s in (".tif", ".gpkg", ".ply", ".2dm", ".obj", ".stl", ".glb", ".xml", ".dxf")
+    ],
 ]
 
 
@@ -48,7 +60,12 @@ def sources(tmp_path_factory):
     for source in (dem, cloud):
         pyramid = str(source.with_suffix(".gpkg"))
         assert main(["analyse", str(source), pyramid, "--levels", "2", "--quiet"]) == 0
-    return {"input": dem, "dem": dem.with_suffix(".gpkg"), "cloud": cloud.with_suffix(".gpkg")}
+    return {
+        "input": dem,
+        "points": cloud,
+        "dem": dem.with_suffix(".gpkg"),
+        "cloud": cloud.with_suffix(".gpkg"),
+    }
 
 
 @contextlib.contextmanager
@@ -62,16 +79,19 @@ def files_limited_to(n_bytes):
 
 
 @pytest.mark.parametrize("job", JOBS, ids=lambda job: "-".join(job[::2]))
-def test_a_file_that_does_not_fit(job, sources, tmp_path, capfd):
+def test_a_file_that_does_not_fit(job, sources, tmp_path, capfd, record_property):
     command, source, name, *options = job
-    if name.endswith((".glb", ".dxf", ".png")):
-        pytest.importorskip({"glb": "trimesh", "dxf": "ezdxf", "png": "matplotlib"}[name[-3:]])
+    pictures = dict.fromkeys(("png", "svg", "pdf"), "matplotlib")
+    package = {"glb": "trimesh", "dxf": "ezdxf", **pictures}.get(name[-3:])
+    if package:
+        pytest.importorskip(package)
     output = tmp_path / name
     line = [command, str(sources[source]), str(output), *options, "--overwrite", "--quiet"]
     assert main(line) == 0
     old = {path: path.read_bytes() for path in tmp_path.iterdir()}
     size = len(old[output])
     limits = {*range(FIRST, size - STEP // 10, max(STEP, size // MOST)), int(0.98 * size)}
+    record_property("limits", len(limits))
     capfd.readouterr()
     for limit in sorted(limits):
         with files_limited_to(limit):

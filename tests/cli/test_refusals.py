@@ -248,3 +248,8 @@ def test_a_full_disk_while_writing(command, pyramid, tmp_path, monkeypatch):
     assert outcome.code == 1
     assert "disk full" in outcome.err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_dropping_dimensions_of_a_raster_is_refused(tif, refused, tmp_path):
+    said = refused("analyse", tif, tmp_path / "x.gpkg", "--drop-other-dimensions")
+    assert "--drop-other-dimensions is for a point cloud" in said

@@ -35,3 +35,11 @@ def test_a_text_out_of_a_file_is_no_template():
     stored = Note("code", "{name} has {n:>3}", (), {"name": "{x}", "n": 2}).to_dict()
     stored["text"] = "{0.__class__} {n:>1000000000}"
     assert Note.from_dict(stored).text == "{0.__class__} {n:>1000000000}"
+
+
+@pytest.mark.parametrize("key", ["name", "path"])
+def test_notes_are_kept_without_folders(key):
+    """Those of rasters, which say ``path``, went into pyramid files with it."""
+    with collected() as notes:
+        note("code", "{" + key + "}: odd", **{key: "/home/somebody/dem.tif"})
+    assert notes[0].text == "dem.tif: odd"

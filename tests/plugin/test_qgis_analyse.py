@@ -68,6 +68,26 @@ class TestDem:
         assert "UTM zone 32N" in (tmp_path / "m.prj").read_text("utf-8")
         assert QgsMeshLayer(str(tmp_path / "m.2dm"), "mesh", "mdal").extent().width() > 1000
 
+    @pytest.mark.parametrize(
+        ("filler", "told"),
+        [
+            (-3.4e38, "which is no elevation"),
+            (-9999.0, "the layer's additional nodata value -9999 makes them holes"),
+        ],
+    )
+    def test_what_may_stand_for_nothing_is_told(self, run, tmp_path, filler, told):
+        """As on the command line; without a word a pit of 3.4e38 m was the result."""
+        values = hills().astype("float32")
+        values[5:9, 5:9] = filler
+        log = Log()
+        parameters = {
+            "INPUT": write_raster(tmp_path / "dem.tif", values),
+            "OUTPUT": str(tmp_path / "out.gpkg"),
+        }
+        made = run("analysedem", parameters, log)
+        assert made["N_VERTICES"] == 60 * 80 - (16 if filler < -1e30 else 0)
+        assert any("16 cells hold" in line and told in line for line in log.warnings)
+
     def test_nodata_set_in_the_layer_properties_is_a_hole(self, run, tmp_path):
         from qgis.core import QgsRasterLayer, QgsRasterRange
 

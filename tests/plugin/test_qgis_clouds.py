@@ -80,3 +80,72 @@ def _has_lazrs():
     from importlib.util import find_spec
 
     return find_spec("lazrs") is not None
+
+
+#: In place of QGIS's own program, which the QGIS of Linux distributions does not bring.
+WRENCH = """#!{python}
+import sys, laspy
+verb, source, target = sys.argv[1:]
+assert verb == "translate"
+laspy.read(source.removeprefix("--input=")).write(target.removeprefix("--output="))
+"""
+
+
+@pytest.fixture
+def without_lazrs(monkeypatch, tmp_path):
+    """Let the plugin find no lazrs, and a program in QGIS's place for it."""
+    import sys
+
+    from terrain_wavelets.plugin.qgis_io import laz_unpacker
+    from terrain_wavelets.plugin.ui import dependencies
+
+    program = tmp_path / "pdal_wrench"
+    program.write_text(WRENCH.format(python=sys.executable))
+    program.chmod(0o755)
+    monkeypatch.setenv(laz_unpacker.VARIABLE, str(program))
+    there = dependencies.missing
+
+    def missing(packages):
+        return [p for p in packages if p is dependencies.LAZRS or there([p])]
+
+    monkeypatch.setattr(dependencies, "missing", missing)
+    monkeypatch.setattr(laz_unpacker, "missing", missing)
+    return program
+
+
+@pytest.mark.skipif(not _has_lazrs(), reason="a LAZ file is needed to begin with")
+class TestWithoutLazrs:
+    def test_laz_is_unpacked_by_the_program_that_qgis_brings(self, run, without_lazrs, tmp_path):
+        path = write_las(tmp_path / "points.laz", survey(400))
+        log = Log()
+        made = run("analysepointcloud", {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg")}, log)
+        assert made["N_VERTICES"] == 400
+        assert any("pdal_wrench" in line for line in log.lines)
+        back = tmp_path / "back.las"
+        run("reconstruct", {"INPUT": made["OUTPUT"], "POINT_CLOUD": str(back)})
+        assert rows(laspy.read(back)) == rows(laspy.read(path))
+
+    def test_what_the_program_cannot_unpack_is_refused_in_one_line(
+        self, refused, without_lazrs, tmp_path
+    ):
+        path = tmp_path / "points.laz"
+        path.write_bytes(b"LASF")
+        told = refused(
+            "analysepointcloud", {"INPUT": str(path), "OUTPUT": str(tmp_path / "p.gpkg")}
+        )
+        assert "pdal_wrench cannot unpack" in told
+        assert not (tmp_path / "p.gpkg").exists()
+
+    def test_without_the_program_the_package_is_needed(self, provider, without_lazrs):
+        from qgis.core import QgsProcessingContext
+        from terrain_wavelets.plugin.parameters.request import Request
+        from terrain_wavelets.plugin.ui import dependencies
+
+        def needed(path):
+            algorithm = provider.algorithm("analysepointcloud")
+            return algorithm.packages(Request(algorithm, {"INPUT": path}, QgsProcessingContext()))
+
+        assert dependencies.LAZRS not in needed("a.laz")
+        without_lazrs.unlink()
+        assert dependencies.LAZRS in needed("a.laz")
+        assert dependencies.LAZRS not in needed("a.las")

@@ -3,6 +3,7 @@
 import pytest
 
 IDS = {
+    "contours",
     "simplifypointcloud",
     "thinpointcloud",
     "analysedem",

@@ -557,3 +557,47 @@ def test_what_is_computed_comes_back_with_its_warnings_notes_and_errors(qgis):
 
     with pytest.raises(MeshError, match="no mesh"):
         computed(log, fails, 0.0, 1.0)
+
+
+class TestContours:
+    def test_a_first_click_gives_about_twenty_heights_of_a_fitting_level(self, run, pyramid):
+        log = Log()
+        made = run("contours", {"INPUT": pyramid, "OUTPUT": "memory:"}, log)
+        layer = made["OUTPUT"]
+        heights = {f["elevation"] for f in layer.getFeatures()}
+        assert 8 <= len(heights) <= 40
+        assert layer.featureCount() == made["N_CONTOURS"]
+        assert 0 < made["FOUND_LEVEL"] <= 6
+        for feature in layer.getFeatures():
+            assert feature["elevation"] % made["FOUND_INTERVAL"] == pytest.approx(0, abs=1e-9)
+            assert {v.z() for v in feature.geometry().vertices()} == {feature["elevation"]}
+
+    def test_the_coarser_the_level_the_smoother_the_contours(self, run, pyramid):
+        def n_points(level):
+            parameters = {"INPUT": pyramid, "LEVEL": level, "INTERVAL": 10, "OUTPUT": "memory:"}
+            layer = run("contours", parameters)["OUTPUT"]
+            return sum(f.geometry().constGet().nCoordinates() for f in layer.getFeatures())
+
+        assert n_points(0) < n_points(3) < n_points(6)
+
+    def test_every_fifth_is_marked_and_drawn_thick(self, run, pyramid):
+        import processing
+        from qgis.core import QgsProcessingContext, QgsProject
+
+        project = QgsProject.instance()
+        context = QgsProcessingContext()
+        context.setProject(project)
+        processing.runAndLoadResults(
+            "terrainwavelets:contours",
+            {"INPUT": pyramid, "INTERVAL": 4.0, "OUTPUT": "TEMPORARY_OUTPUT"},
+            context=context,
+            feedback=Log(),
+        )
+        (layer,) = project.mapLayers().values()
+        marked = {f["elevation"] for f in layer.getFeatures() if f["is_index"]}
+        assert marked
+        assert all(height % 20 == 0 for height in marked)
+        symbol = layer.renderer().symbol().symbolLayer(0)
+        assert symbol.dataDefinedProperties().hasActiveProperties()
+        assert "FOUND_LEVEL = " in layer.metadata().abstract()
+        project.clear()

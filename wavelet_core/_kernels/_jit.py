@@ -202,10 +202,11 @@ def n_threads() -> int:
     return os.cpu_count() or 1
 
 
-def run_in_ranges(step: Kernel, n_items: int, *arguments: Any) -> None:
+def run_in_ranges(step: Kernel, n_items: int, *arguments: Any, called: str = "") -> None:
     """Run ``step(start, stop, *arguments)`` over ``[0, n_items)``; compiled, in threads.
 
-    Every item must write only its own results, so that the split does not matter.
+    Every item must write only its own results, so that the split does not matter. ``called`` is
+    what users know the step by.
 
     Raises
     ------
@@ -215,8 +216,9 @@ def run_in_ranges(step: Kernel, n_items: int, *arguments: Any) -> None:
     name = current_engine()
     if name == "arrays" and step.arrays is None and n_items > MAX_LOOPS:
         raise OptionError(
-            f"{step.loops.__name__} over {n_items} items is too slow without numba (at most "
-            f"{MAX_LOOPS}); install numba, or choose another prediction or a smaller input."
+            f"{called or step.loops.__name__} over {n_items} vertices is too slow without numba "
+            f"(at most {MAX_LOOPS}); install numba, or choose another prediction or a smaller "
+            "input."
         )
     threads = n_threads()
     if name != "compiled" or threads == 1 or n_items < 4096:

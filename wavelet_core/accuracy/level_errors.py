@@ -24,8 +24,8 @@ class LevelErrors(NamedTuple):
     rmse_surface, max_error_surface : float
         Vertical distance of all input vertices from the level's surface, in the unit of z.
     n_uncovered : int
-        Input vertices that lie on no face of the level (none with signal "z", but for the
-        isolated ones).
+        Input points that lie on no face of the level and at no isolated vertex (none with signal
+        "z").
     """
 
     level: int

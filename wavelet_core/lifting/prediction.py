@@ -100,12 +100,17 @@ def nnls(removal: Removal) -> csr_array:
     *Our choice:* a damping of 1e-8 of the squared ring size makes them unique where several sets
     are equally good.
     """
-    return _by_kernel(nnls_weights, removal, removal.points)
+    return _by_kernel(nnls_weights, removal, removal.points, called="the prediction nnls (NNLS)")
 
 
 def least_squares(removal: Removal) -> csr_array:
     """Return as :func:`nnls`, damping included, weights of any sign: the paper's baseline."""
-    return _by_kernel(least_squares_weights, removal, removal.points)
+    return _by_kernel(
+        least_squares_weights,
+        removal,
+        removal.points,
+        called="the prediction least_squares (LS)",
+    )
 
 
 def plane(removal: Removal) -> csr_array:
@@ -168,7 +173,9 @@ def _ring_rows(removal: Removal) -> _RingRows:
     return _RingRows(indptr, columns)
 
 
-def _by_kernel(kernel: Kernel, removal: Removal, *arguments: NDArray) -> csr_array:
+def _by_kernel(
+    kernel: Kernel, removal: Removal, *arguments: NDArray, called: str = ""
+) -> csr_array:
     """Return P with the weights that a kernel gives the ring of each odd vertex."""
     rows, connectivity = _ring_rows(removal), removal.connectivity
     weights = np.empty(len(rows.columns))
@@ -181,6 +188,7 @@ def _by_kernel(kernel: Kernel, removal: Removal, *arguments: NDArray) -> csr_arr
         connectivity.ring,
         *arguments,
         weights,
+        called=called,
     )
     return _matrix(removal, rows, weights)
 

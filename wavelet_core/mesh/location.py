@@ -47,7 +47,8 @@ def surface_errors(
     -------
     ndarray, shape (n_points,)
         z of the point minus z of the surface at its x, y; NaN where no face covers it. Where
-        faces overlap in plan, the first one counts.
+        faces overlap in plan, the first one counts. A vertex that no face uses, such as a single
+        cell among holes, is surface at its own place.
     """
     cover = cover_of(mesh, points[:, :2]) if cover is None else cover
     z = mesh.vertices[:, 2]
@@ -55,7 +56,26 @@ def surface_errors(
     surface = z[a] + cover.at_b * (z[b] - z[a]) + cover.at_c * (z[c] - z[a])
     errors = np.full(len(points), np.nan)
     errors[cover.point] = points[cover.point, 2] - surface
+    if len(cover.point) < len(points):
+        _fill_at_lone_vertices(errors, mesh, points)
     return errors
+
+
+def _fill_at_lone_vertices(errors: FloatArray, mesh: TriangleMesh, points: FloatArray) -> None:
+    """Give points over no face the error against the vertex without faces that is there."""
+    is_lone = np.ones(mesh.n_vertices, dtype=bool)
+    is_lone[mesh.faces.reshape(-1)] = False
+    lone = mesh.vertices[is_lone]
+    if not len(lone):
+        return
+    over_none = np.flatnonzero(np.isnan(errors))
+    places = lone[:, 0] + 1j * lone[:, 1]
+    order = np.argsort(places, kind="stable")
+    wanted = points[over_none, 0] + 1j * points[over_none, 1]
+    at = order[np.minimum(np.searchsorted(places[order], wanted), len(lone) - 1)]
+    is_there = places[at] == wanted
+    found = over_none[is_there]
+    errors[found] = points[found, 2] - lone[at[is_there], 2]
 
 
 def cover_of(mesh: TriangleMesh, plan: FloatArray) -> Cover:

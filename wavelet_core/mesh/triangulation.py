@@ -118,7 +118,14 @@ def _cdt_faces(pythoncdt: Any, plan: FloatArray, edges: IntArray | None) -> IntA
         pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED,
         0.0,
     )
-    triangulation.insert_vertices(np.ascontiguousarray(plan, dtype=np.float64))
+    try:
+        triangulation.insert_vertices(np.ascontiguousarray(plan, dtype=np.float64))
+    except RuntimeError as error:
+        reason = str(error).splitlines()[0]
+        raise MeshError(
+            f"the points cannot be triangulated ({reason}); some lie closer together than numbers "
+            "can tell apart, or far from all others: leave those out."
+        ) from error
     if edges is not None and len(edges):
         try:
             triangulation.insert_edges(np.ascontiguousarray(edges, dtype=np.uint32))

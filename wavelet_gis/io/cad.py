@@ -173,13 +173,20 @@ def write_dxf(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
         raise MissingDependencyError(
             "DXF is written by ezdxf, which is not installed; run 'pip install ezdxf'."
         ) from error
-    document = ezdxf.filemanagement.new("R2010")
-    document.layers.add("TERRAIN")
-    space = document.modelspace()
-    for a, b, c in mesh.vertices[mesh.faces].tolist():
-        space.add_3dface([a, b, c, c], dxfattribs={"layer": "TERRAIN"})
-    text = io.StringIO(newline="\n")
-    document.write(text)
+    options = ezdxf.options  # type: ignore[attr-defined, unused-ignore]
+    # The same mesh gives the same bytes: no time, and no identifiers drawn at random.
+    is_fixed = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        document = ezdxf.filemanagement.new("R2010")
+        document.layers.add("TERRAIN")
+        space = document.modelspace()
+        for a, b, c in mesh.vertices[mesh.faces].tolist():
+            space.add_3dface([a, b, c, c], dxfattribs={"layer": "TERRAIN"})
+        text = io.StringIO(newline="\n")
+        document.write(text)
+    finally:
+        options.write_fixed_meta_data_for_testing = is_fixed
     write_text(path, text.getvalue())
 
 

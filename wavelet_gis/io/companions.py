@@ -121,7 +121,7 @@ def warn_of_foreign_files(target: Path) -> None:
     if names:
         warn(
             TerrainWarning,
-            "stranger_beside_output",
+            "companion_of_old_output",
             "{files} beside {output} is left as it was and may not describe the new file; remove "
             "it if it was made for the old one",
             stacklevel=3,

@@ -37,7 +37,10 @@ __all__ = [
 ]
 
 #: Elevations beyond this, in any unit, leave no digits for geometry.
-_LARGEST_ELEVATION = 1e30
+LARGEST_ELEVATION = 1e30
+
+#: And no place is further from the origin of a CRS.
+LARGEST_COORDINATE = 1e15
 
 #: Rows or columns; GDAL knows no larger rasters.
 _LARGEST_SIDE = 2**31 - 1
@@ -77,7 +80,7 @@ class GridGeometry:
         x_min, y_min, x_max, y_max = grid_bounds(self)
         step = min(max(abs(a), abs(d)), max(abs(b), abs(e)))
         reach = max(abs(x_min), abs(y_min), abs(x_max), abs(y_max))
-        if not math.isfinite(reach) or reach > 1e15 or step < 1e-12 * reach:
+        if not math.isfinite(reach) or reach > LARGEST_COORDINATE or step < 1e-12 * reach:
             return "has cells too small or too far away to be told apart"
         return ""
 
@@ -370,7 +373,7 @@ def require_sound(dem: Dem, name: str) -> None:
     values = dem.values[dem.valid]
     for raw in (float(values.min()), float(values.max())):
         elevation = raw * dem.scale + dem.offset
-        if not abs(elevation) < _LARGEST_ELEVATION:
+        if not abs(elevation) < LARGEST_ELEVATION:
             raise InputFileError(
                 "{name}: an elevation is {elevation:.4g}; name the nodata value ({0} {raw!r}), or "
                 "set scale and offset of the band right.",

@@ -16,6 +16,7 @@ from wavelet_core.mesh.location import surface_errors
 from wavelet_core.mesh.triangulation import Merged, delaunay_faces, merge_duplicates
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import InputFileError, PointCloudWarning
+from wavelet_gis.model.dem import LARGEST_COORDINATE, LARGEST_ELEVATION
 from wavelet_gis.model.terrain import Terrain, frame_of_bounds, terrain_of_mesh
 from wavelet_gis.notes import collected, warn
 
@@ -261,6 +262,7 @@ def terrain_of_points(
         raise InputFileError(
             f"{name}: some coordinates or attributes are no finite numbers; leave those points out."
         )
+    _require_coordinates(name, points, "point")
     with collected() as notes:
         frame, unit = frame_of_coordinates(name, points, system, vertical_unit)
         local = frame.to_local(points)
@@ -298,10 +300,28 @@ def terrain_of_triangles(
         No triangle, or triangles that are no surface.
     """
     flat = corners.reshape(-1, 3)
+    _require_coordinates(name, flat, "corner of a triangle")
     with collected() as notes:
         frame, unit = frame_of_coordinates(name, flat, system, vertical_unit)
     mesh = mesh_of_corners(frame.to_local(flat).reshape(corners.shape))
     return terrain_of_mesh(name, mesh, system, frame, unit).with_notes(notes)
+
+
+def _require_coordinates(name: str, coordinates: FloatArray, what: str) -> None:
+    """Refuse coordinates that are no finite numbers, or that no CRS has, before work begins."""
+    with np.errstate(invalid="ignore"):
+        is_sound = np.abs(coordinates) <= [
+            LARGEST_COORDINATE,
+            LARGEST_COORDINATE,
+            LARGEST_ELEVATION,
+        ]
+    if not is_sound.all():
+        row = int(np.argmin(is_sound.all(axis=1)))
+        x, y, z = coordinates[row]
+        raise InputFileError(
+            f"{name}: a {what} is at x {x:.8g}, y {y:.8g}, z {z:.8g}, which no terrain has; leave "
+            "it out, or put its coordinates right."
+        )
 
 
 def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:

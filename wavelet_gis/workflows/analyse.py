@@ -20,6 +20,7 @@ from wavelet_gis.workflows.options import (
     note_moved_outline,
     note_unreached_size,
     require_terrain,
+    warn_of_error_above,
     working_rules,
 )
 from wavelet_gis.workflows.reconstruct import check_restored_output, reconstruct
@@ -132,7 +133,8 @@ def analyse(
         Stop at so many vertices.
     max_error, max_rms : float, optional
         Stop before the largest, or the root mean square, vertical error at all input vertices is
-        above this, in the input's unit of z.
+        above this, in the input's unit of z. Points that share x and y with a vertex are farther
+        off by as much as they are apart, which is warned of.
     measure : bool
         Whether the errors of every level are measured.
     progress : callable, optional
@@ -179,4 +181,13 @@ def analyse(
     if measure:
         clock.stage("errors")
         geo = geo.with_errors(part_of(progress, 0.7, 1.0), finest, terrain.points_for_errors())
+        coarsest = geo.errors_at(0)
+        if coarsest is not None:
+            warn_of_error_above(
+                terrain.name,
+                coarsest.max_error_surface,
+                coarsest.rmse_surface,
+                max_error=max_error,
+                max_rms=max_rms,
+            )
     return Analysis(geo, clock.seconds())

@@ -16,18 +16,18 @@ from wavelet_core.mesh.location import Cover, surface_errors
 from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
 from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.products.lone_vertices import lone_vertices
-from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+from wavelet_gis.notes import note
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, warn_of_error_above
 from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
 
 __all__ = ["Surface", "SurfaceErrors", "extract", "measured"]
 
 
 class SurfaceErrors(NamedTuple):
-    """Vertical errors of a surface at all input vertices, in the input's unit of z.
+    """Vertical errors of a surface at all input points, in the input's unit of z.
 
     rmse, max_error : float
-    n_uncovered : int, input vertices that no triangle covers, which have no error
+    n_uncovered : int, input points that no triangle covers, which have no error
     """
 
     rmse: float
@@ -50,7 +50,7 @@ class Surface:
     level : int
         The level that it is, or, of a size between two, the finer one.
     errors : SurfaceErrors or None
-        None where they are not known.
+        At all input points; None for a level of a pyramid that does not tell them.
     """
 
     geo: GeoPyramid
@@ -128,7 +128,6 @@ def measured(
     points: NDArray[np.float64],
     z_scale: float,
     cover: Cover | None = None,
-    vertex_ids: NDArray[np.int64] | None = None,
 ) -> SurfaceErrors:
     """Return the vertical errors of a surface.
 
@@ -142,14 +141,8 @@ def measured(
         Working units in one of the input's unit of z.
     cover : Cover, optional
         Of the points on the mesh, where it is known already.
-    vertex_ids : (n_vertices,) int64, optional
-        Which of the points the vertices are: one without a triangle is kept, and its height with
-        it.
     """
     errors = surface_errors(mesh, points, cover) / z_scale
-    if vertex_ids is not None:
-        lone = lone_vertices(mesh)
-        errors[vertex_ids[lone]] = (mesh.vertices[lone, 2] - points[vertex_ids[lone], 2]) / z_scale
     covered = errors[np.isfinite(errors)]
     return SurfaceErrors(
         float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
@@ -177,12 +170,13 @@ def extract(
         Instead: just so many.
     max_error : float, optional
         Instead: the smallest found with no input vertex farther off, vertically, in the input's
-        unit of z.
+        unit of z. Points that share x and y with a vertex are farther off by as much as they are
+        apart, which is warned of.
 
     Returns
     -------
     Surface
-        With its errors where the pyramid's file tells them.
+        With its errors, but for a level whose errors the pyramid's file does not tell.
 
     Raises
     ------
@@ -197,7 +191,10 @@ def extract(
     if vertices is not None:
         return _between(geo, mesh_of_size(geo.pyramid, vertices))
     if max_error is not None:
-        return _between(geo, mesh_of_accuracy(geo.pyramid, max_error * geo.frame.z_scale))
+        surface = _between(geo, mesh_of_accuracy(geo.pyramid, max_error * geo.frame.z_scale))
+        found = surface.errors.max_error if surface.errors else None
+        warn_of_error_above(geo.source_name, found, None, max_error=max_error)
+        return surface
     chosen = level or 0
     mesh = geo.pyramid.mesh(chosen)
     return Surface(geo, mesh, geo.pyramid.vertex_ids(chosen), chosen, _errors_at(geo, chosen))
@@ -206,6 +203,19 @@ def extract(
 def _between(geo: GeoPyramid, part: PartialMesh) -> Surface:
     is_level = part.mesh.n_vertices == geo.pyramid.n_vertices(part.level)
     errors = _errors_at(geo, part.level) if is_level else None
+    if errors is None:
+        finest, origin = geo.pyramid.mesh(geo.pyramid.n_levels), geo.origin
+        points = finest.vertices
+        if origin.points is not None:
+            points = origin.points.points_for_errors(finest, geo.frame)
+        elif any(entry.code == "merged_points" for entry in geo.notes):
+            note(
+                "merged_points_not_kept",
+                "{name}: a pyramid of a layer or table does not keep the points that share x and "
+                "y with a vertex; the error is the one at the vertices",
+                name=geo.source_name,
+            )
+        errors = measured(part.mesh, points, geo.frame.z_scale)
     return Surface(geo, part.mesh, part.vertex_ids, part.level, errors)
 
 

@@ -136,8 +136,8 @@ def filter_pyramid(
     metres: tuple[float, float] | None = None,
     drop_coarse: bool = False,
     denoise: bool | float = False,
-    n_pyramids: int = N_PYRAMIDS,
-    channels: Sequence[str] = ("z",),
+    n_pyramids: int | None = None,
+    channels: Sequence[str] | None = None,
     noise_range: RangeOption = 0.0,
     local_noise: bool = False,
     outliers: bool = False,
@@ -157,10 +157,11 @@ def filter_pyramid(
     denoise : bool or float
         Whether noise is taken out; a number is its standard deviation, in the input's unit, which
         is estimated otherwise.
-    n_pyramids : int
-        How many pyramids in random order are averaged; 0 thresholds the details of one.
-    channels : sequence of str
-        Which to take noise from.
+    n_pyramids : int, optional
+        How many pyramids in random order are averaged, 8 by default; 0 thresholds the details of
+        one.
+    channels : sequence of str, optional
+        Which to take noise from; by default z.
     noise_range : float or "estimate"
         Distance at which the correlation of the noise has fallen to 1/e, in metres where the CRS
         tells its unit, else in its own; 0 for white noise.
@@ -180,7 +181,7 @@ def filter_pyramid(
     ------
     OptionError
         Nothing to do, a pyramid without levels, bounds in the wrong order, levels or channels that
-        are not there, kinds of noise without denoising; nothing has been computed yet.
+        are not there, what tells of noise without denoising; nothing has been computed yet.
     Cancelled
         ``progress`` returned False.
     """
@@ -192,10 +193,17 @@ def filter_pyramid(
         raise OptionError(
             "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
         )
-    if not asks_denoising and (noise_range != 0.0 or local_noise or outliers):
-        raise OptionError(
-            "{0}, {1} and {2} tell of noise; give {3} too.", *NOISE_OPTIONS, "denoise"
-        )
+    told_of_noise = {
+        "noise_range": noise_range != 0.0,
+        "local_noise": local_noise,
+        "outliers": outliers,
+        "n_pyramids": n_pyramids is not None,
+        "channels": channels is not None,
+    }
+    in_vain = [name for name, is_given in told_of_noise.items() if is_given]
+    if in_vain and not asks_denoising:
+        raise OptionError("{0} is for {1}; give {1} too, or leave {0} out.", in_vain[0], "denoise")
+    n_pyramids = N_PYRAMIDS if n_pyramids is None else n_pyramids
     require_levels(geo)
     builds_levels = metres is not None and not _has_sizes(geo, metres)
     wanted = chosen_gains(geo, single, levels=levels, metres=None if builds_levels else metres)
@@ -206,7 +214,7 @@ def filter_pyramid(
         changed, sigmas = denoised(
             changed,
             None if denoise is True else denoise,
-            channels=channels,
+            channels=("z",) if channels is None else channels,
             n_pyramids=n_pyramids,
             noise_range=noise_range,
             local_noise=local_noise,
@@ -321,6 +329,8 @@ def denoised(
         )
         noise = found[name]
         _tell_of_outliers(geo.source_name, name, noise)
+        if noise.is_rough:
+            _tell_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
         sigmas[name] = noise.sigma / unit
         in_file = replace(
             noise,
@@ -333,6 +343,23 @@ def denoised(
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
     line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
     return geo.with_pyramid(pyramid, line), sigmas
+
+
+def _tell_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
+    """Warn that noise and relief were not to be told apart."""
+    kind = "white, since its range is not to be told either, and " if noise_range else ""
+    warn(
+        TerrainWarning,
+        "relief_as_fine_as_the_mesh",
+        "{name}: {channel} has relief as fine as the mesh, which cannot be told from noise; the "
+        "noise is taken to be {kind}that of the flattest places, {sigma:.4g} ({0} names another)",
+        "denoise",
+        stacklevel=4,
+        name=source,
+        channel=channel,
+        kind=kind,
+        sigma=sigma,
+    )
 
 
 def _tell_of_outliers(source: str, channel: str, noise: Noise) -> None:

@@ -24,6 +24,7 @@ _MEANT_FOR = {
     "attributes": (CLOUD, POINTS, TABLE),
     "classes": (CLOUD,),
     "class_channels": (CLOUD,),
+    "carry": (CLOUD,),
     "keep_noise": (CLOUD,),
     "keep_withheld": (CLOUD,),
     "duplicates": (CLOUD,),
@@ -71,6 +72,8 @@ def require_meaning(path: object, kind: str, options: Mapping[str, Any]) -> None
 
 
 def _is_given(name: str, value: Any) -> bool:
+    if name == "carry":  # the one that is on by default
+        return value is False
     if value is None or value is False:
         return False
     if name == "attributes":

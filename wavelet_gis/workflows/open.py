@@ -136,6 +136,7 @@ def open_terrain(
             "attributes": attributes,
             "classes": classes,
             "class_channels": class_channels,
+            "carry": carry,
             "keep_noise": keep_noise,
             "keep_withheld": keep_withheld,
             "duplicates": duplicates,
@@ -349,6 +350,11 @@ def _raster_or_vector(
         is_table = suffix_of(path) in POINT_TABLE_SUFFIXES
         if no_raster is None or is_table or _is_about_content(error):
             raise
+        if "no raster that GDAL can open" in str(no_raster):
+            raise InputFileError(
+                f"{name}: this is neither a raster nor a layer that GDAL can open; check the file "
+                "and its suffix."
+            ) from error
         raise no_raster from error
     require_meaning(path, POINTS if found.corners is None else TRIANGLES, given)
     return _terrain_of_vector(name, found, system, unit)

@@ -11,11 +11,13 @@ from wavelet_core import Pyramid, TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.partition.outline import area_change
 from wavelet_gis.crs.frame import LocalFrame
+from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.terrain import Terrain
-from wavelet_gis.notes import note
+from wavelet_gis.notes import note, warn
 
 __all__ = [
+    "ROUNDING",
     "HoldsPyramid",
     "WaveletOptions",
     "core_options",
@@ -24,8 +26,12 @@ __all__ = [
     "pyramid_of",
     "require_levels",
     "require_terrain",
+    "warn_of_error_above",
     "working_rules",
 ]
+
+#: An error that is above a limit by so much, in parts of one, is within it.
+ROUNDING = 1e-9
 
 
 class WaveletOptions(TypedDict, total=False):
@@ -156,6 +162,44 @@ def note_moved_outline(
         tolerance=outline_tolerance,
         area_change=area_change(original, coarse),
     )
+
+
+def warn_of_error_above(
+    name: str,
+    largest: float | None,
+    rms: float | None,
+    *,
+    max_error: float | None = None,
+    max_rms: float | None = None,
+) -> None:
+    """Warn where the error at all input points is above what was asked for at the vertices.
+
+    A stop rule looks at the vertices; points that share x and y with one of them are farther off
+    by as much as they are apart, whatever the surface is.
+
+    Parameters
+    ----------
+    name : str
+        Of the input, for the message.
+    largest, rms : float or None
+        As measured at all input points, in the input's unit of z; None where they were not.
+    max_error, max_rms : float, optional
+        What was asked for.
+    """
+    for option, asked, found in (("max_error", max_error, largest), ("max_rms", max_rms, rms)):
+        if asked is None or found is None or found <= asked * (1.0 + ROUNDING):
+            continue
+        warn(
+            TerrainWarning,
+            "error_above_what_was_asked",
+            "{name}: {0} {asked:g} holds at the vertices; with the points that share x and y with "
+            "one of them the error is {found:.4g}",
+            option,
+            stacklevel=3,
+            name=name,
+            asked=asked,
+            found=found,
+        )
 
 
 class HoldsPyramid(Protocol):

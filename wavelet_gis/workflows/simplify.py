@@ -24,11 +24,13 @@ from wavelet_gis.progress import Clock, part_of
 from wavelet_gis.workflows.analyse import Analysis
 from wavelet_gis.workflows.extract import Surface, SurfaceErrors, measured
 from wavelet_gis.workflows.options import (
+    ROUNDING,
     WaveletOptions,
     core_options,
     note_moved_outline,
     note_unreached_size,
     require_terrain,
+    warn_of_error_above,
     working_rules,
 )
 
@@ -227,9 +229,17 @@ def simplify(
     clock.stage("errors")
     # Of a cloud these are all points of the surface: those merged with a vertex count too.
     points = terrain.points_for_errors()
-    known = tin.cover if len(points) == terrain.mesh.n_vertices else None
     z_scale = terrain.frame.z_scale
-    errors = measured(tin.mesh, points, z_scale, known, tin.vertex_ids)
+    at_vertices = measured(tin.mesh, terrain.mesh.vertices, z_scale)
+    if _is_above(at_vertices.max_error, max_error) or _is_above(at_vertices.rmse, max_rms):
+        # A vertex on the outline may have gone unmeasured in a round; the pyramid's level holds.
+        tin = finished(pyramid, terrain.mesh, fit=fit, rounds=0, keep_points=keep_points)
+        at_vertices = measured(tin.mesh, terrain.mesh.vertices, z_scale)
+    is_all = len(points) == terrain.mesh.n_vertices
+    errors = at_vertices if is_all else measured(tin.mesh, points, z_scale)
+    warn_of_error_above(
+        terrain.name, errors.max_error, errors.rmse, max_error=max_error, max_rms=max_rms
+    )
     noted = terrain.with_notes([*terrain.notes, *notes])
     return Simplified(
         geo=noted.uncorrected(pyramid),
@@ -245,6 +255,10 @@ def simplify(
         ),
         seconds=clock.seconds(),
     )
+
+
+def _is_above(found: float, asked: float | None) -> bool:
+    return asked is not None and found > asked * (1.0 + ROUNDING)
 
 
 def _without_update(keywords: dict[str, Any]) -> dict[str, Any]:

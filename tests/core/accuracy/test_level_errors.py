@@ -49,9 +49,24 @@ def test_every_point_agrees_with_a_search_through_all_faces(seed):
         assert error == pytest.approx(expected, abs=1e-9, nan_ok=True)
 
 
+def test_a_vertex_without_a_face_is_surface_at_its_own_place():
+    """Single cells among holes were left out of the errors of the levels."""
+    values = np.full((6, 7), np.nan)
+    values[:3, :3] = np.arange(9.0).reshape(3, 3) ** 2
+    values[5, 1], values[4, 5], values[5, 6] = 40.0, 50.0, 60.0
+    mesh = TriangleMesh.from_grid(values, x=np.arange(7.0), y=-np.arange(6.0))
+    points = np.vstack([mesh.vertices, mesh.vertices[-3:] + np.array([0.0, 0.0, 3.0])])
+    errors = surface_errors(mesh, points)
+    assert np.abs(errors[:-3]).max() < 1e-12
+    assert errors[-3:].tolist() == [3.0, 3.0, 3.0]
+    for row in level_errors(analyse(mesh)):
+        assert row.n_uncovered == 0
+
+
 def test_no_faces_and_no_points():
     lonely = TriangleMesh([[0, 0, 0], [1, 1, 1]], np.empty((0, 3), dtype=int))
-    assert np.isnan(surface_errors(lonely, lonely.vertices)).all()
+    beside = lonely.vertices + np.array([0.0, 0.5, 0.0])
+    assert np.isnan(surface_errors(lonely, beside)).all()
     assert len(surface_errors(synthetic.plane(), np.empty((0, 3)))) == 0
 
 

@@ -154,7 +154,10 @@ def test_every_step_but_the_rare_ones_has_a_twin():
 
 def test_a_step_without_a_twin_is_refused_above_its_limit(monkeypatch):
     monkeypatch.setattr(_jit, "MAX_LOOPS", 10)
-    with engine("arrays"), pytest.raises(OptionError, match="without numba"):
+    with (
+        engine("arrays"),
+        pytest.raises(OptionError, match=r"^the prediction nnls \(NNLS\) over .* without numba"),
+    ):
         analyse(synthetic.hills(12, 12), prediction="NNLSMN", levels=1)
 
 

@@ -111,9 +111,9 @@ def test_values_rounded_to_a_step_have_at_least_its_noise():
     assert estimate_noise(metres) < 0.05
     found = {}
     clean = denoise(metres, n_pyramids=2, found=found)
-    assert found["z"].sigma == pytest.approx(1 / np.sqrt(12))
+    assert found["z"].sigma == pytest.approx(1 / np.sqrt(6))
     assert "values rounded to 1" in found["z"].describe()
-    assert rmse(clean, gentle) < 0.85 * rmse(metres, gentle)
+    assert rmse(clean, gentle) < 0.7 * rmse(metres, gentle)
 
 
 @pytest.mark.parametrize(
@@ -178,3 +178,39 @@ def test_progress_is_told_often_and_in_order_and_any_call_may_cancel():
         with pytest.raises(Cancelled, match="denoising was cancelled"):
             denoise(mesh, 0.2, **options, progress=answer)
         assert len(calls) == stop + 1
+
+
+def rough_terrain(n=80):
+    """Return relief as fine as the cells in mountains, and next to none in the plain beside."""
+    waves = np.hypot(*np.meshgrid(np.fft.fftfreq(n), np.fft.fftfreq(n)))
+    waves[0, 0] = 1.0
+    white = np.random.default_rng(3).standard_normal((n, n))
+    relief = np.fft.ifft2(np.fft.fft2(white) * waves**-1.6).real
+    share = 0.05 + 0.95 / (1 + np.exp(-14 * (np.arange(n) / n - 0.4)))
+    return 60 * relief / relief.std() * share[:, None]
+
+
+@pytest.mark.parametrize("noise_range", [0.0, "estimate"])
+def test_noise_that_is_estimated_does_not_spoil_rough_terrain(noise_range):
+    """With an estimate of the range the error rose from 1.0 to 1.2, for white noise to 1.7."""
+    truth = rough_terrain()
+    noisy = truth + np.random.default_rng(1).standard_normal(truth.shape)
+    found = {}
+    clean = denoise(mesh_of(noisy), n_pyramids=2, noise_range=noise_range, found=found)
+    assert rmse(clean, truth) < 0.9
+    assert found["z"].is_rough
+    assert found["z"].reach == 0.0
+    assert found["z"].sigma == pytest.approx(1.0, rel=0.1)
+
+
+@pytest.mark.data
+@pytest.mark.parametrize(("name", "limit"), [("tasmania_33m_f64", 0.8), ("jacksboro_tn_4326", 1.6)])
+def test_noise_of_one_metre_on_real_mountains(data_folder, name, limit):
+    """An estimate of the range made 2.5 and 15.2 of it."""
+    import rasterio
+
+    with rasterio.open(data_folder / "dems" / f"{name}.tif") as dataset:
+        truth = dataset.read(1)[100:240, 100:240].astype(float)
+    noisy = truth + np.random.default_rng(1).standard_normal(truth.shape)
+    clean = denoise(mesh_of(noisy), n_pyramids=2, noise_range="estimate")
+    assert rmse(clean, truth) < limit

@@ -1,6 +1,7 @@
 """TINs for CAD and 3D viewers, read back by libraries that know the formats."""
 
 import builtins
+import time
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -80,3 +81,13 @@ def test_a_missing_library_is_named(mesh, tmp_path, monkeypatch, suffix, package
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(MissingDependencyError, match=f"pip install {package}"):
         write_mesh(tmp_path / f"a.{suffix}", mesh)
+
+
+def test_a_dxf_of_the_same_mesh_has_the_same_bytes(tmp_path):
+    """Its header held the time, and two identifiers drawn at random."""
+    pytest.importorskip("ezdxf")
+    mesh = synthetic.hills(5, 5)
+    for name in ("a.dxf", "b.dxf"):
+        write_mesh(tmp_path / name, mesh)
+        time.sleep(1.1)
+    assert (tmp_path / "a.dxf").read_bytes() == (tmp_path / "b.dxf").read_bytes()

@@ -35,7 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-error",
         type=float,
         metavar="M",
-        help="stop before the largest vertical error is above this, in the unit of z",
+        help="stop before the largest vertical error at the vertices is above this, in the unit of "
+        "z; points that share x and y with a vertex are told of",
     )
     parser.add_argument(
         "--max-rms", type=float, metavar="M", help="the same for the root mean square"

@@ -33,7 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-error",
         type=length,
         metavar="M",
-        help="the least with no input vertex further off, vertically; in the unit of z",
+        help="the least with no input vertex further off, vertically; in the unit of z. Points "
+        "that share x and y with a vertex are told of",
     )
     parser.add_argument(
         "--categories",
@@ -69,10 +70,16 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         categories=arguments.categories,
         **options,
     )
+    errors = ""
+    if surface.errors is not None:
+        errors = (
+            f"; RMSE {surface.errors.rmse:.4g}, largest error {surface.errors.max_error:.4g} "
+            f"({surface.geo.vertical_unit}) at all input points"
+        )
     figures = {"level": surface.level, **surface.figures(), **cells}
     shape = f", {cells['n_rows']} x {cells['n_columns']} cells" if cells else ""
     console.say(
         f"level {surface.level}: {figures['n_vertices']:,} vertices, "
-        f"{figures['n_triangles']:,} triangles{shape}; {arguments.output}"
+        f"{figures['n_triangles']:,} triangles{shape}{errors}; {arguments.output}"
     )
     console.figures({"output": str(arguments.output), **figures})

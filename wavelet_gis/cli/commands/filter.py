@@ -80,7 +80,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--pyramids",
         dest="n_pyramids",
         type=int,
-        default=8,
         metavar="N",
         help="average over so many pyramids in random order (default 8); 0: threshold the "
         "details of a single one, which is quick and leaves traces of its triangles",
@@ -120,7 +119,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             drop_coarse=arguments.drop_coarse,
             denoise=arguments.denoise,
             n_pyramids=arguments.n_pyramids,
-            channels=tuple(arguments.channels or ("z",)),
+            channels=arguments.channels and tuple(arguments.channels),
             noise_range=arguments.noise_range,
             local_noise=arguments.local_noise,
             outliers=arguments.outliers,

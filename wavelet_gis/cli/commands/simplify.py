@@ -42,7 +42,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-error",
         type=length,
         metavar="M",
-        help="keep so many that no input point is further off, vertically; in the unit of z",
+        help="keep so many that no input vertex is further off, vertically; in the unit of z. "
+        "Points that share x and y with a vertex are told of",
     )
     rule.add_argument(
         "--rmse",

@@ -7,7 +7,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["NO_ELEVATION", "doubtful_value", "impossible_values"]
+from wavelet_gis.errors import RasterWarning
+from wavelet_gis.notes import warn
+
+__all__ = [
+    "NO_ELEVATION",
+    "NO_TAG",
+    "doubtful_value",
+    "impossible_values",
+    "tell_of_doubts",
+    "told_holes",
+]
+
+#: Given for a nodata value, it says that there is none.
+NO_TAG = "none"
 
 #: Floats from here on are no elevations in any unit; programs fill holes with them.
 NO_ELEVATION = 1e30
@@ -56,3 +69,61 @@ def doubtful_value(values: NDArray[Any]) -> tuple[float, int, float] | None:
         if gap > max(spread, 1.0) and gap > 50.0:
             return float(end), len(values) - len(rest), float(nearest)
     return None
+
+
+def told_holes(values: NDArray[Any], valid: NDArray[np.bool_], name: str) -> NDArray[np.bool_]:
+    """Return which cells can be no elevations though they are no holes yet, and warn of them.
+
+    Parameters
+    ----------
+    values : ndarray
+        The stored numbers.
+    valid : ndarray of bool
+        Cells with data.
+    name : str
+        Of the raster, for the warning.
+    """
+    holes = valid & impossible_values(values)
+    if holes.any():
+        found = sorted({float(value) for value in np.unique(values[holes])[:3]})
+        warn(
+            RasterWarning,
+            "impossible_elevations",
+            "{path}: {n_cells:,} cells hold {values}, which is no elevation; they are taken as "
+            "nodata ({0} names another value, or {none})",
+            "nodata",
+            stacklevel=4,
+            path=name,
+            n_cells=int(np.count_nonzero(holes)),
+            values=", ".join(f"{value:.8g}" for value in found),
+            none=NO_TAG,
+        )
+    return holes
+
+
+def tell_of_doubts(values: NDArray[Any], name: str) -> None:
+    """Warn of a value that may stand for nothing.
+
+    Parameters
+    ----------
+    values : (n,) any real type
+        The stored numbers of the cells with data.
+    name : str
+        Of the raster.
+    """
+    doubt = doubtful_value(values)
+    if doubt is None:
+        return
+    value, count, nearest = doubt
+    warn(
+        RasterWarning,
+        "doubtful_elevations",
+        "{path}: {n_cells:,} cells hold {value:.8g} and the next value is {nearest:.8g}; they are "
+        "taken as elevations ({0} {value:.8g} makes them holes)",
+        "nodata",
+        stacklevel=4,
+        path=name,
+        n_cells=count,
+        value=value,
+        nearest=nearest,
+    )

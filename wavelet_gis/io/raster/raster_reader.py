@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,9 +12,10 @@ from numpy.typing import NDArray
 
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.errors import InputFileError, RasterWarning
+from wavelet_gis.io.libraries import silent_libraries
 from wavelet_gis.io.names import file_of, gdal_path
 from wavelet_gis.io.raster.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
-from wavelet_gis.io.raster.nodata import doubtful_value, impossible_values
+from wavelet_gis.io.raster.nodata import NO_TAG, tell_of_doubts, told_holes
 from wavelet_gis.io.raster.remote import NO_NETWORK, remote_reference
 from wavelet_gis.model.dem import Dem, GridGeometry, require_sound
 from wavelet_gis.notes import warn
@@ -24,10 +23,7 @@ from wavelet_gis.notes import warn
 if TYPE_CHECKING:
     from rasterio.io import DatasetReader
 
-__all__ = ["NO_TAG", "read_dem", "silent_libraries"]
-
-#: Given for a nodata value, it says that there is none.
-NO_TAG = "none"
+__all__ = ["NO_TAG", "read_dem"]
 
 #: Creation options of GeoTIFF that are taken over from the file that was read.
 _GTIFF_OPTIONS = ("compress", "predictor", "tiled", "blockxsize", "blockysize")
@@ -64,7 +60,7 @@ def read_dem(
     -----
     RasterWarning
         When numbers that can be no elevations are taken as nodata, when others may be meant as
-        nodata, and when data come over the network.
+        nodata, when data come over the network, and when GDAL complains of the file.
 
     Notes
     -----
@@ -96,11 +92,11 @@ def read_dem(
     try:
         # A raster without georeference is told of by our own warning, once.
         settings = NO_NETWORK if offline else {}
-        with warnings.catch_warnings(), silent_libraries(), rasterio.Env(**settings):
+        with warnings.catch_warnings(), silent_libraries() as said, rasterio.Env(**settings):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(gdal_path(path)) as dataset:
                 dem, place = _read_band(dataset, path, band, nodata)
-    except (RasterioError, CPLE_BaseError) as error:
+    except (RasterioError, CPLE_BaseError, UnicodeDecodeError) as error:
         if remote is not None:
             raise InputFileError(
                 f"{path}: {remote}, which this raster reads over the network, cannot be had; fetch "
@@ -108,25 +104,15 @@ def read_dem(
             ) from error
         raise InputFileError(f"{path}: {_reason(error, path)}") from error
     require_sound(dem, os.fspath(path))
-    _tell_of_doubts(dem, path)
+    if said:
+        _warn(
+            "raster_read_with_complaints",
+            "{path}: read, but not without complaint of GDAL: {complaint}",
+            path=os.fspath(path),
+            complaint=said[0],
+        )
+    tell_of_doubts(dem.values[dem.valid], os.fspath(path))
     return dem, place
-
-
-@contextmanager
-def silent_libraries() -> Iterator[None]:
-    """Keep what libtiff prints on its own off standard error; the error itself comes to us."""
-    try:
-        kept = os.dup(2)
-    except OSError:  # standard error is closed
-        yield
-        return
-    with open(os.devnull, "wb") as nowhere:
-        os.dup2(nowhere.fileno(), 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 def _require_file(path: str | os.PathLike[str]) -> None:
@@ -210,20 +196,7 @@ def _valid_cells(
     if values.dtype.kind == "f":
         valid &= np.isfinite(values)
     if nodata is None:
-        holes = valid & impossible_values(values)
-        if holes.any():
-            found = sorted({float(value) for value in np.unique(values[holes])[:3]})
-            _warn(
-                "impossible_elevations",
-                "{path}: {n_cells:,} cells hold {values}, which is no elevation; they are taken "
-                "as nodata ({0} names another value, or {none})",
-                "nodata",
-                path=os.fspath(path),
-                n_cells=int(np.count_nonzero(holes)),
-                values=", ".join(f"{value:.8g}" for value in found),
-                none=NO_TAG,
-            )
-            valid &= ~holes
+        valid &= ~told_holes(values, valid, os.fspath(path))
     elif nodata != NO_TAG:
         number = float(nodata)
         info = np.iinfo(values.dtype) if values.dtype.kind in "iu" else None
@@ -234,22 +207,6 @@ def _valid_cells(
             )
         valid &= values != values.dtype.type(number)
     return valid
-
-
-def _tell_of_doubts(dem: Dem, path: str | os.PathLike[str]) -> None:
-    doubt = doubtful_value(dem.values[dem.valid])
-    if doubt is not None:
-        value, count, nearest = doubt
-        _warn(
-            "doubtful_elevations",
-            "{path}: {n_cells:,} cells hold {value:.8g} and the next value is {nearest:.8g}; they "
-            "are taken as elevations ({0} {value:.8g} makes them holes)",
-            "nodata",
-            path=os.fspath(path),
-            n_cells=count,
-            value=value,
-            nearest=nearest,
-        )
 
 
 def _warn(code: str, template: str, *options: str, **figures: Any) -> None:
@@ -293,6 +250,8 @@ def _reason(error: Exception, path: str | os.PathLike[str]) -> str:
             "this is a text file of points, not a raster that GDAL can open; make a LAS file of "
             "it (pdal translate a.xyz a.las), or a grid (gdal_grid)."
         )
+    if isinstance(error, UnicodeDecodeError):  # GDAL's complaint quotes what is no text
+        return "this is no raster that GDAL can open; check the file and its suffix."
     cause = error.__cause__ or error
     text = str(cause).splitlines()[0] if str(cause) else type(cause).__name__
     if "not recognized" in text:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree  # nosec B405: reads what GDAL has just written
 
 from wavelet_gis.errors import OutputFileError
+from wavelet_gis.io.libraries import silent_libraries
 from wavelet_gis.io.names import gdal_path
 from wavelet_gis.io.raster.raster_check import check_raster
-from wavelet_gis.io.raster.raster_reader import silent_libraries
 from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.products.vertex_raster import Bands

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, LayerWarning
+from wavelet_gis.io.libraries import silent_libraries
+from wavelet_gis.notes import warn
 
 __all__ = ["VectorTerrain", "read_vector", "vector_terrain"]
+
+#: What pyogrio lets through of what a damaged file makes of it.
+_READ_ERRORS = (ValueError, KeyError, IndexError, OverflowError)
 
 _POINTS, _POLYGONS = {0, 4}, {3, 6}  # type ids of shapely: single and multi
 
@@ -61,14 +67,32 @@ def read_vector(
     name = os.fspath(path)
     wanted = [*([z_field] if z_field else []), *attributes]
     try:
-        if layer is None:
-            layer = _only_layer(name, pyogrio.list_layers(name))
-        meta, _, geometry, columns = pyogrio.raw.read(name, layer=layer, columns=wanted)
-    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, ValueError) as error:
-        reason = str(error).splitlines()[0].rstrip(".")
+        with silent_libraries() as said, warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            if layer is None:
+                layer = _only_layer(name, pyogrio.list_layers(name))
+            meta, _, geometry, columns = pyogrio.raw.read(name, layer=layer, columns=wanted)
+    except (*_READ_ERRORS, pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
+        lines = str(error).splitlines() or [type(error).__name__]
+        reason = lines[0].rstrip(".")
         raise InputFileError(f"{name}: the layer cannot be read ({reason}).") from error
+    try:
+        shapes = shapely.from_wkb(geometry)
+    except shapely.errors.ShapelyError as error:
+        reason = str(error).splitlines()[0].rstrip(".")
+        raise InputFileError(
+            f"{name}: a shape of the layer {layer} is damaged ({reason}); get the file again."
+        ) from error
+    said += [str(warning.message) for warning in told]
+    if said:
+        warn(
+            LayerWarning,
+            "layer_read_with_complaints",
+            "{name}: read, but not without complaint of GDAL: {complaint}",
+            name=name,
+            complaint=said[0],
+        )
     table = dict(zip(meta["fields"], columns, strict=True))
-    shapes = shapely.from_wkb(geometry)
     return vector_terrain(name, shapes, table, meta["crs"], z_field=z_field, attributes=attributes)
 
 

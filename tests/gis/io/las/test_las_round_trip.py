@@ -145,6 +145,38 @@ def test_every_version_format_and_record_comes_back(tmp_path, minor, point_forma
         assert (tmp_path / "back.las").read_bytes() == path.read_bytes()
 
 
+VLRS = ((), (record(b"x", 1, b"23"), record(b"nobody knows me!", 7, bytes(range(200)))))
+EVLRS = ((), (record(b"big", 3, bytes(7_000), extended=True), record(b"b", 1, b"", extended=True)))
+EXTRAS = (
+    ((), 0),
+    ((extra_bytes((3, b"two bytes"), (9, b"four \xe9"), what=b"what \xff"),), 6),
+    ((), 5),
+)
+BETWEEN = ((b"", b""), (b"padding", b"behind the points"))
+
+
+@pytest.mark.large
+@pytest.mark.filterwarnings("ignore:.*refer to waveforms")
+@pytest.mark.parametrize(("minor", "point_format"), PAIRS)
+def test_the_whole_matrix_through_a_pyramid_file(tmp_path, minor, point_format):
+    """Records x extended records x extra bytes x what lies between: 24 files, 12 before LAS 1.4."""
+    n_compared = 0
+    for vlrs, evlrs, (described, extra), (gap, tail) in product(VLRS, EVLRS, EXTRAS, BETWEEN):
+        if evlrs and minor < 4:
+            continue
+        content = las_bytes(
+            minor, point_format, vlrs=(*vlrs, *described), evlrs=evlrs, extra=extra, gap=gap,
+            tail=tail,
+        )  # fmt: skip
+        (tmp_path / "a.las").write_bytes(content)
+        write_cloud(tmp_path / "back.las", through_a_file(tmp_path / "a.las", tmp_path).restore())
+        assert (tmp_path / "back.las").read_bytes() == content, (bool(vlrs), bool(evlrs), extra)
+        for name in ("a.las", "a.gpkg", "back.las"):
+            (tmp_path / name).unlink()
+        n_compared += 1
+    assert n_compared == (24 if minor == 4 else 12)
+
+
 @pytest.mark.filterwarnings("ignore:.*has no point format")
 @pytest.mark.filterwarnings("ignore:.*refer to waveforms")
 @pytest.mark.parametrize(("minor", "point_format"), [(0, 3), (1, 2), (2, 6), (2, 5), (3, 10)])

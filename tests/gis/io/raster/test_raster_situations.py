@@ -2,9 +2,7 @@
 
 import functools
 import http.server
-import itertools
 import threading
-import warnings
 
 import numpy as np
 import pytest
@@ -27,7 +25,6 @@ PLACES = {
     "degrees": (rasterio.Affine(0.001, 0.0, 7.0, 0.0, -0.001, 44.0), "EPSG:4326"),
     "compound": (NORTH_UP, "EPSG:32632+5773"),
 }
-DTYPES = ("uint8", "int16", "uint16", "int32", "uint32", "float32", "float64")
 
 
 def pyramid_of(path, levels=2, **options):
@@ -38,36 +35,6 @@ def pyramid_of(path, levels=2, **options):
 def set_scale(path, scale, offset):
     with rasterio.open(path, "r+") as dataset:
         dataset.scales, dataset.offsets = (scale,), (offset,)
-
-
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("dtype", DTYPES)
-def test_the_round_trip_matrix(tmp_path, dtype, place):
-    """Type x nodata x scale x mask x CRS x orientation, bit for bit."""
-    transform, crs = PLACES[place]
-    plain = (hills(12, 13) / 2).astype(dtype)
-    low = 0 if dtype[0] == "u" else -9999
-    tags = [None, low, 0] + ([float("nan")] if dtype[0] == "f" else [])
-    cases = itertools.product(tags, ((1.0, 0.0), (0.1, -100.0)), (False, True))
-    for k, (tag, (scale, offset), has_mask) in enumerate(cases):
-        values = plain.copy()
-        if tag is not None:
-            values[2:5, 3:6] = tag
-        source, out = tmp_path / f"{k}.tif", tmp_path / f"{k}b.tif"
-        mask = np.ones(values.shape, dtype=bool)
-        mask[7:9, 7:9] = False
-        with rasterio.Env(GDAL_TIFF_INTERNAL_MASK=True):
-            write_tif(source, values, crs=crs, transform=transform, nodata=tag)
-            if has_mask and tag is None:
-                with rasterio.open(source, "r+") as dataset:
-                    dataset.write_mask(mask)
-        if scale != 1.0:
-            set_scale(source, scale, offset)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            geo = pyramid_of(source, levels=1)
-        write_dem(out, geo.restore(), geo.system.wkt)
-        assert_same_raster(source, out)
 
 
 @pytest.mark.parametrize("scale", [0.1, 2.0, -1.0, 1e-3])
