@@ -2006,7 +2006,7 @@
   <message>
     <location filename="../../plugin/ui/wording.py"/>
     <source>the layer's additional nodata value</source>
-    <translation type="unfinished"></translation>
+    <translation>der zusätzliche NoData-Wert des Layers</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>
