@@ -7,7 +7,7 @@ PYTEST := $(BIN)/python -m pytest
 # Two workers on two cores take little more than half the time; tests that time nothing allow it.
 PARALLEL ?= --numprocesses auto
 
-.PHONY: help demo test test-compiled test-plain test-fast test-qgis test-qgis-numpy2 lint docs plugin clean
+.PHONY: help demo test test-compiled test-plain test-fast test-qgis test-qgis-numpy2 lint check docs plugin release clean
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
@@ -20,6 +20,8 @@ help:
 	@echo "make lint       ruff, mypy and numpydoc"
 	@echo "make docs       the documentation as a site, in docs/_build/html"
 	@echo "make plugin     the QGIS plugin as dist/terrain_wavelets.zip, from the last commit"
+	@echo "make check      lint, test and docs"
+	@echo "make release    wheel, source, plugin, manual page and completions in dist/, once all is ready"
 	@echo "make clean      remove what the above made, except $(VENV)"
 
 # A stamp for each set of packages, so that a second run starts at once.
@@ -64,6 +66,12 @@ docs: $(BIN)/.installed-docs
 
 plugin:
 	@$(PYTHON) scripts/plugin_zip.py
+
+check: lint test docs
+
+# Files for a release in dist/; says what only a person can fill in. make release DRAFT=--draft makes them all the same.
+release: $(BIN)/.installed-release
+	@$(BIN)/python scripts/release.py $(DRAFT)
 
 clean:
 	rm -rf build dist demo_output docs/_build docs/made docs/_static/levels.html *.egg-info .pytest_cache .hypothesis .ruff_cache .mypy_cache

@@ -6,7 +6,8 @@ usage: python benchmarks/peers.py DEM [DEM ...] [--keep 0.25,0.1,0.02,0.005] [--
 
 Each measurement has a process of its own: one call on a 65 x 65 corner to load and compile, then
 the call that is measured. Errors are vertical, at every node of the DEM, by a rasteriser that
-shares nothing with the package. Peers that take a number of faces are asked for twice the number
+shares nothing with the package; a node that no triangle covers is judged by the surface at the
+nearest one that has some. Peers that take a number of faces are asked for twice the number
 of vertices. Needs the extra "bench": pip install -e ".[bench]"
 """
 
@@ -24,6 +25,7 @@ from time import perf_counter
 
 import numpy as np
 from numba import njit
+from scipy.ndimage import distance_transform_edt
 
 CELL = 30.0
 LIMIT_SECONDS = 180
@@ -69,6 +71,28 @@ def ours(z, vertices, faces, n, **options):
     return mesh.vertices, mesh.faces
 
 
+def ours_refined(z, vertices, faces, n, rounds=None, keep_points=False, **options):
+    """Return what `simplify` gives: the level refined, its heights fitted."""
+    from wavelet_core import TriangleMesh, analyse, finished
+
+    original = TriangleMesh(vertices, faces)
+    pyramid = analyse(original, target_vertices=n, **options)
+    mesh = finished(pyramid, original, rounds=rounds, keep_points=keep_points).mesh
+    return mesh.vertices, mesh.faces
+
+
+def ours_fitted(z, vertices, faces, n):
+    return ours_refined(z, vertices, faces, n, rounds=0)
+
+
+def ours_kept(z, vertices, faces, n):
+    return ours_refined(z, vertices, faces, n, keep_points=True, update="none")
+
+
+def ours_max_refined(z, vertices, faces, n):
+    return ours_refined(z, vertices, faces, n, norm="max")
+
+
 def ours_max(z, vertices, faces, n):
     return ours(z, vertices, faces, n, norm="max")
 
@@ -103,6 +127,28 @@ def meshoptimizer(z, vertices, faces, n):
     )
     used, inverse = np.unique(result[:count].astype(np.int64), return_inverse=True)
     return vertices[used], inverse.reshape(-1, 3)
+
+
+def qslim(z, vertices, faces, n):
+    import igl
+
+    arrays = np.asfortranarray(vertices), np.asfortranarray(faces, dtype=np.int32)
+    return igl.qslim(*arrays, 2 * n)[:2]
+
+
+def opengl_decimate(z, vertices, faces, n, metric="quadric"):
+    from opengl_decimate import SimplifyOptions, simplify
+
+    origin = vertices.mean(axis=0)
+    positions = (vertices - origin).astype(np.float32)
+    options = SimplifyOptions(target_count=2 * n, metric=metric)
+    result = simplify({"POSITION": positions}, faces.ravel().astype(np.uint32), options)
+    moved = np.asarray(result.attributes["POSITION"], dtype=np.float64) + origin
+    return moved, np.asarray(result.indices).reshape(-1, 3)
+
+
+def opengl_probabilistic(z, vertices, faces, n):
+    return opengl_decimate(z, vertices, faces, n, metric="probabilistic")
 
 
 def vtk(z, vertices, faces, n):
@@ -169,8 +215,15 @@ def wavelet97(z, vertices, faces, n):
 
 PEERS: dict[str, Callable] = {
     "ours": ours,
+    "ours fitted": ours_fitted,
+    "ours refined": ours_refined,
+    "ours points kept": ours_kept,
     "ours max": ours_max,
+    "ours max refined": ours_max_refined,
     "ours paper": ours_paper,
+    "libigl qslim": qslim,
+    "opengl-decimate": opengl_decimate,
+    "opengl-decimate probabilistic": opengl_probabilistic,
     "VTK quadric": vtk,
     "fast-simplification": fast_simplification,
     "pyfqmr": pyfqmr,
@@ -215,6 +268,14 @@ def lay_faces(x, y, z, faces, surface, covered, inside):
     return n_flipped, n_flat
 
 
+def extended(surface: np.ndarray, covered: np.ndarray) -> np.ndarray:
+    """Return the surface with the height of the nearest covered node where it covers none."""
+    if covered.all():
+        return surface
+    nearest = distance_transform_edt(~covered, return_distances=False, return_indices=True)
+    return surface[tuple(nearest)]
+
+
 def judge(z: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> dict[str, float]:
     """Return size, errors and faults of a TIN over the nodes of a DEM."""
     x, y, heights = (np.ascontiguousarray(c, dtype=np.float64) for c in np.asarray(vertices).T)
@@ -224,7 +285,7 @@ def judge(z: np.ndarray, vertices: np.ndarray, faces: np.ndarray) -> dict[str, f
     arguments = (x / CELL, y / CELL, heights, faces, surface, covered, inside)
     n_flipped, n_flat = lay_faces(*arguments)
     n_flipped = min(n_flipped, len(faces) - n_flat - n_flipped)
-    error = (surface - z)[covered > 0]
+    error = (extended(surface, covered > 0) - z).ravel()
     on_node = np.abs(vertices[:, :2] / CELL - np.round(vertices[:, :2] / CELL)).max(axis=1) < 1e-6
     return {
         "n_vertices": len(np.unique(faces)),

@@ -61,10 +61,19 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
             "UPDATE": "minimum_norm",
         },
     ),
-    "Simplify DEM to TIN": ("simplifydem", {"INPUT": "{dem}", "TIN": "memory:"}),
-    "Simplify DEM to TIN, largest error 0.5": (
+    "Simplify DEM to TIN, no refinement": (
         "simplifydem",
-        {"INPUT": "{dem}", "MAX_ERROR": 0.5, "RASTER": "{out}.tif", "MESH": "{out}.2dm"},
+        {"INPUT": "{dem}", "REFINE": 0, "TIN": "memory:"},
+    ),
+    "The same, largest error 0.5": (
+        "simplifydem",
+        {
+            "INPUT": "{dem}",
+            "MAX_ERROR": 0.5,
+            "REFINE": 0,
+            "RASTER": "{out}.tif",
+            "MESH": "{out}.2dm",
+        },
     ),
     "Analyse point cloud, LAS": ("analysepointcloud", {"INPUT": "{las}", "OUTPUT": "{out}.gpkg"}),
     "Analyse point cloud, LAZ": ("analysepointcloud", {"INPUT": "{laz}", "OUTPUT": "{out}.gpkg"}),

@@ -52,7 +52,7 @@ def table_strings() -> dict[str, list[str]]:
     import wavelet_core
     from wavelet_gis.io.formats import MESH_FORMATS
 
-    names = ("PARTITIONS", "NORMS", "PREDICTIONS", "UPDATES", "SIGNALS")
+    names = ("PARTITIONS", "NORMS", "PREDICTIONS", "UPDATES", "SIGNALS", "QUADRICS", "COSTS")
     found = {name: [row.help for row in getattr(wavelet_core, name).values()] for name in names}
     return {**found, "MESH_FORMATS": [row.used_by for row in MESH_FORMATS]}
 

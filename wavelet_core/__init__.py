@@ -42,15 +42,18 @@ from .lifting.spacings import level_spacings
 from .lifting.step import FilterPair, Step
 from .lifting.update import UPDATES
 from .mesh.triangle_mesh import TriangleMesh
+from .partition.orderings import COSTS, QUADRICS
 from .partition.registry import NORMS, PARTITIONS
 from .progress import Progress
 from .refinement.finish import finished
 from .refinement.refine import Refinement, Round, refine
 
 __all__ = [
+    "COSTS",
     "NORMS",
     "PARTITIONS",
     "PREDICTIONS",
+    "QUADRICS",
     "SHAPE_NAMES",
     "SIGNALS",
     "STAYS",

@@ -1,6 +1,6 @@
 """Remake the tables and pictures of ``docs/paper-experiments.md``.
 
-    python -m benchmarks.paper [DATA_FOLDER] [--only rmse,salience,noise,frequency]
+    python -m benchmarks.paper [DATA_FOLDER] [--only rmse,salience,noise,frequency,readings]
                                [--autzen-points 100000]
 
 Autzen is thinned to ``--autzen-points`` because twelve designs of all its ten million points take
@@ -13,11 +13,11 @@ import json
 import warnings
 from pathlib import Path
 
-from . import clouds, frequency, page, rmse, salience
+from . import clouds, frequency, page, readings, rmse, salience
 
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent.parent / "docs"
-EXPERIMENTS = ("frequency", "salience", "noise", "rmse")
+EXPERIMENTS = ("frequency", "salience", "noise", "rmse", "readings")
 #: The paper's dense set has 9 M points; Autzen's first 9 M of 10.65 M along y stand for it.
 DENSE_SHARE = 9.0 / 10.65
 
@@ -58,6 +58,9 @@ def main():
             results[name] = salience.run(arguments.data, pictures)
         elif name == "noise":
             results[name] = salience.run_noise(arguments.data)
+        elif name == "readings":
+            samples = list(rmse_samples(arguments.data, arguments.autzen_points))
+            results[name] = readings.run(samples[:2] + samples[3:], arguments.data)
         elif name == "rmse":
             for sample in rmse_samples(arguments.data, arguments.autzen_points):
                 results.setdefault(name, {})[sample.name] = rmse.run(sample, pictures)

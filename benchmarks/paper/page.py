@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from . import readings
 from .rmse import PREDICTIONS, UPDATES
 
 
@@ -33,6 +34,9 @@ def tables(results: dict[str, Any]) -> dict[str, list[str]]:
         made["noise"] = noise_table(results["noise"])
     if "frequency" in results:
         made["frequency"] = frequency_table(results["frequency"])
+    if "readings" in results:
+        made["reading errors"] = readings.error_table(results["readings"])
+        made["readings"] = readings.claim_table(results["readings"])
     return made
 
 

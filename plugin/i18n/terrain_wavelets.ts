@@ -1535,6 +1535,16 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>By what the &lt;i&gt;quadric&lt;/i&gt; partition ranks. By default as the paper says.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Cost of the paper's partition</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Error kept small</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1591,6 +1601,11 @@
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Prediction filter</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Quadrics of the paper's partition</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1666,6 +1681,11 @@
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weights of attributes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>What becomes of the quadrics from level to level, with the &lt;i&gt;quadric&lt;/i&gt; partition. By default as the paper says.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2086,6 +2106,26 @@
   <message>
     <location filename="../../SIGNALS"/>
     <source>elevation and attributes; every level is a valid TIN</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../QUADRICS"/>
+    <source>built anew on every level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../QUADRICS"/>
+    <source>built on the input, handed on (Eqs. 52-53)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../COSTS"/>
+    <source>the least of them, which is that of the collapse</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../COSTS"/>
+    <source>the sum over the neighbours' quadrics (Eq. 36)</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

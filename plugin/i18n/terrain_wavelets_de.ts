@@ -1535,6 +1535,16 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>By what the &lt;i&gt;quadric&lt;/i&gt; partition ranks. By default as the paper says.</source>
+    <translation>Wonach die Zerlegung &lt;i&gt;quadric&lt;/i&gt; ordnet. Ohne Angabe wie im Aufsatz.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Cost of the paper's partition</source>
+    <translation>Kosten der Zerlegung des Aufsatzes</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Error kept small</source>
     <translation>Klein gehaltener Fehler</translation>
   </message>
@@ -1592,6 +1602,11 @@
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Prediction filter</source>
     <translation>Vorhersagefilter</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>Quadrics of the paper's partition</source>
+    <translation>Quadriken der Zerlegung des Aufsatzes</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
@@ -1667,6 +1682,11 @@
     <location filename="../../plugin/parameters/analysis_options.py"/>
     <source>Weights of attributes</source>
     <translation>Gewichte der Attribute</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/analysis_options.py"/>
+    <source>What becomes of the quadrics from level to level, with the &lt;i&gt;quadric&lt;/i&gt; partition. By default as the paper says.</source>
+    <translation>Was bei der Zerlegung &lt;i&gt;quadric&lt;/i&gt; von Stufe zu Stufe aus den Quadriken wird. Ohne Angabe wie im Aufsatz.</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
@@ -1986,7 +2006,7 @@
   <message>
     <location filename="../../plugin/ui/wording.py"/>
     <source>the layer's additional nodata value</source>
-    <translation type="unfinished"></translation>
+    <translation>der zusätzliche NoData-Wert des Layers</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>
@@ -2087,6 +2107,26 @@
     <location filename="../../SIGNALS"/>
     <source>elevation and attributes; every level is a valid TIN</source>
     <translation>Höhe und Attribute; jede Stufe ist ein gültiges TIN</translation>
+  </message>
+  <message>
+    <location filename="../../QUADRICS"/>
+    <source>built anew on every level</source>
+    <translation>auf jeder Stufe neu gebildet</translation>
+  </message>
+  <message>
+    <location filename="../../QUADRICS"/>
+    <source>built on the input, handed on (Eqs. 52-53)</source>
+    <translation>auf der Eingabe gebildet und weitergereicht (Gl. 52-53)</translation>
+  </message>
+  <message>
+    <location filename="../../COSTS"/>
+    <source>the least of them, which is that of the collapse</source>
+    <translation>die kleinste davon, die der Kollaps selbst hat</translation>
+  </message>
+  <message>
+    <location filename="../../COSTS"/>
+    <source>the sum over the neighbours' quadrics (Eq. 36)</source>
+    <translation>die Summe über die Quadriken der Nachbarn (Gl. 36)</translation>
   </message>
   <message>
     <location filename="../../MESH_FORMATS"/>

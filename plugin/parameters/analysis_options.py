@@ -113,6 +113,21 @@ def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
             tr("Lifted coordinates"),
             tr("What the wavelets transform. By default <i>z</i>."),
         ),
+        (
+            "QUADRICS",
+            "QUADRICS",
+            tr("Quadrics of the paper's partition"),
+            tr(
+                "What becomes of the quadrics from level to level, with the <i>quadric</i> "
+                "partition. By default as the paper says."
+            ),
+        ),
+        (
+            "COST",
+            "COSTS",
+            tr("Cost of the paper's partition"),
+            tr("By what the <i>quadric</i> partition ranks. By default as the paper says."),
+        ),
     ):
         parameter, rows = table_choice(name, description, core_table(table))
         algorithm.add(parameter, text + rows, advanced=True)
@@ -223,6 +238,8 @@ def design_options(request: Request) -> WaveletOptions:
         "prediction": request.choice("PREDICTION"),
         "update": request.choice("UPDATE"),
         "signal": request.choice("SIGNAL"),
+        "quadrics": request.choice("QUADRICS"),
+        "cost": request.choice("COST"),
         "bending_weight": None if weight == DEFAULT_BENDING_WEIGHT else weight,
         "removal_fraction": request.number("REMOVAL_FRACTION"),
         "outline_tolerance": request.number("OUTLINE_TOLERANCE"),

@@ -230,3 +230,12 @@ def test_memory_that_runs_out_is_one_line(pyramid, monkeypatch, capsys):
     monkeypatch.setattr("wavelet_gis.io.pyramid.pyramid_file.read_summary", fail)
     assert main(["info", str(pyramid)]) == 1
     assert "not enough memory" in capsys.readouterr().err
+
+
+def test_completion_of_commands_options_and_files(process):
+    pytest.importorskip("shtab")
+    said = process("--print-completion", "bash")
+    assert said.returncode == 0
+    for word in ("analyse", "--max-error", "_shtab_compgen_files", "--print-completion"):
+        assert word in said.stdout
+    assert process("--print-completion", "dos").returncode == 2

@@ -16,6 +16,8 @@ TABLES = {
     "--prediction": wavelet_core.PREDICTIONS,
     "--update": wavelet_core.UPDATES,
     "--norm": wavelet_core.NORMS,
+    "--quadrics": wavelet_core.QUADRICS,
+    "--cost": wavelet_core.COSTS,
     "--duplicates": DUPLICATE_RULES,
     "--method": CLUSTERINGS,
 }

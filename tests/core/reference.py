@@ -398,6 +398,7 @@ def partition(
     quadrics: Quadrics,
     locked: np.ndarray,
     signal: str,
+    rank: str = "ring",
 ) -> tuple[list[int], list[int]]:
     """Return odd vertices in removal order and their targets (Algorithm 2).
 
@@ -406,7 +407,8 @@ def partition(
     cost = np.zeros(len(points))
     for v in range(len(points)):
         if kind(faces, v) in ("interior", "boundary"):
-            cost[v] = sum(quadrics.error(w, extended[v]) for w in one_ring(faces, v))
+            errors = [quadrics.error(w, extended[v]) for w in one_ring(faces, v)]
+            cost[v] = sum(errors) if rank == "ring" else min(errors)
     marked = set(np.flatnonzero(locked).tolist())
     odd, targets = [], []
     current = list(faces)
@@ -461,6 +463,8 @@ def analyse(
     signal: str,
     locked: Any = None,
     bending_weight: float = 1.0,
+    quadrics_of: str = "redistributed",
+    cost: str = "ring",
     attribute_weights: Any = None,
     partitions: list[tuple[list[int], list[int]]] | None = None,
     filters: list[tuple[np.ndarray, np.ndarray]] | None = None,
@@ -496,10 +500,10 @@ def analyse(
             if energy_scale > 0:
                 bending = np.minimum(np.sqrt(energy / energy_scale), 1.0) * bending_weight
             extended = np.column_stack([points, bending])
-            if quadrics is None:
+            if quadrics is None or quadrics_of == "rebuilt":
                 quadrics = Quadrics.from_mesh(extended, level_faces)
             odd, target = partition(
-                points, plan, level_faces, extended, quadrics, is_locked, signal
+                points, plan, level_faces, extended, quadrics, is_locked, signal, cost
             )
         elif step < len(partitions):
             odd, target = ([int(v) for v in ids] for ids in partitions[step])

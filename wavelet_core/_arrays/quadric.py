@@ -78,6 +78,21 @@ def ring_costs(start, stop, points, quadrics, indptr, ring, ring_size, cost):
         cost[v] = on_lattice(exact, ROUNDING * _magnitude(total, points[v]))
 
 
+def target_costs(start, stop, points, quadrics, indptr, ring, ring_size, cost):
+    cost[:] = 0.0
+    for size, v in by_size(ring_size):
+        if size == 0:
+            continue
+        around = rings(v, size, indptr, ring)
+        least = np.full(len(v), np.inf)
+        for k in range(size):
+            quadric = quadrics[around[:, k]]
+            exact = np.maximum(evaluate(quadric, points[v]), 0.0)
+            here = on_lattice(exact, ROUNDING * _magnitude(quadric, points[v]))
+            least = np.minimum(least, here)
+        cost[v] = least
+
+
 def _magnitude(quadrics, points):
     d = points.shape[1]
     slot = 0

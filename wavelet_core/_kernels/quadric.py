@@ -113,6 +113,23 @@ def ring_costs(start, stop, points, quadrics, indptr, ring, ring_size, cost):
         cost[vertex] = on_lattice(exact, step)
 
 
+# What the cheapest collapse of each vertex costs: v^T Q(a) v, the least over its neighbours a, on
+# the same lattice; 0 without a ring. cost (n,) float64, filled
+@kernel
+def target_costs(start, stop, points, quadrics, indptr, ring, ring_size, cost):
+    for vertex in range(start, stop):
+        base = indptr[vertex] + vertex
+        point = points[vertex]
+        least = 0.0
+        for k in range(ring_size[vertex]):
+            quadric = quadrics[ring[base + k]]
+            exact = max(evaluate(quadric, point), 0.0)
+            here = on_lattice(exact, ROUNDING * magnitude(quadric, point))
+            if k == 0 or here < least:
+                least = here
+        cost[vertex] = least
+
+
 # Eqs. 52-53: quadrics (n, size) float64, changed; odd (n_odd,) int32; columns are even positions
 @kernel
 def spread_quadrics(odd, even, row_indptr, columns, weights, quadrics):

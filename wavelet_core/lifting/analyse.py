@@ -48,6 +48,8 @@ def analyse(
     progress: Progress | None = None,
     attribute_weights: Sequence[float] | None = None,
     bending_weight: float | None = None,
+    quadrics: str | None = None,
+    cost: str | None = None,
     seed: int | None = None,
     norm: str | None = None,
     removal_fraction: float | None = None,
@@ -93,6 +95,12 @@ def analyse(
         Weight of each attribute, against the coordinates, in cost and prediction; 1 by default.
     bending_weight : float, optional
         Weight of the bending energy in the cost of ``partition="quadric"``; by default 1.
+    quadrics : {"redistributed", "rebuilt"}, optional
+        With ``partition="quadric"``: built on the input and handed on from level to level, as the
+        paper says (Eqs. 52-53), the default; or built anew on every level.
+    cost : {"ring", "collapse"}, optional
+        With ``partition="quadric"``: the sum over the quadrics of all neighbours (Eq. 36), the
+        default; or the least of them, that of the collapse which is made.
     seed : int, optional
         Of the order of ``partition="random"``; by default 0.
     norm : {"rms", "max"}, optional
@@ -154,6 +162,8 @@ def analyse(
         max_rms=max_rms,
         attribute_weights=attribute_weights,
         bending_weight=bending_weight,
+        quadrics=quadrics,
+        cost=cost,
         seed=seed,
         norm=norm,
         removal_fraction=removal_fraction,

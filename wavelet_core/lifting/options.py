@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 from ..errors import OptionError, UnstableDesignWarning
+from ..partition.orderings import COSTS, QUADRICS
 from ..partition.registry import NORMS, PARTITIONS, Norm, PartitionRow
 from .prediction import PREDICTIONS, Prediction
 from .signal import SIGNALS, Signal
@@ -44,6 +45,8 @@ class AnalysisOptions:
     max_rms: float | None
     attribute_weights: tuple[float, ...]
     bending_weight: float
+    quadrics: str
+    cost: str
     seed: int
     norm: str
     removal_fraction: float
@@ -151,6 +154,8 @@ def resolve_options(
     max_rms: float | None,
     attribute_weights: Sequence[float] | None,
     bending_weight: float | None,
+    quadrics: str | None,
+    cost: str | None,
     seed: int | None,
     norm: str | None,
     removal_fraction: float | None,
@@ -167,12 +172,15 @@ def resolve_options(
     design = parse_design(prediction, update)
     of_partition = _partition(partition, design, of_signal)
     of_norm = NORMS.find(norm) if norm is not None else NORMS["rms" if max_error is None else "max"]
+    of_quadrics, of_cost = QUADRICS.chosen(quadrics), COSTS.chosen(cost)
     of_prediction = design.prediction or PREDICTIONS[of_partition.prediction]
     of_update = design.update or UPDATES[_default_update(of_partition, of_norm)]
     given = {
         "norm": norm,
         "removal_fraction": removal_fraction,
         "bending_weight": bending_weight,
+        "quadrics": quadrics,
+        "cost": cost,
         "seed": seed,
     }
     _require_use(of_partition, (name for name, value in given.items() if value is not None))
@@ -214,6 +222,8 @@ def resolve_options(
         max_rms=mean,
         attribute_weights=checked_weights(attribute_weights, n_attributes),
         bending_weight=_or(1.0, _number("bending_weight", bending_weight)),
+        quadrics=of_quadrics.name,
+        cost=of_cost.name,
         seed=_or(0, _whole("seed", seed, 0, 2**63 - 1)),
         norm=of_norm.name,
         removal_fraction=_fraction(removal_fraction, of_norm, targets, largest),

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from .._kernels._jit import run_in_ranges
-from .._kernels.quadric import ring_costs, spread_quadrics, star_quadrics
+from .._kernels.quadric import ring_costs, spread_quadrics, star_quadrics, target_costs
 from .._validate import FloatArray
 from .connectivity import Connectivity
 
@@ -54,6 +54,28 @@ def vertex_costs(
     cost = np.empty(len(points))
     run_in_ranges(
         ring_costs,
+        len(points),
+        points,
+        quadrics,
+        connectivity.star_indptr,
+        connectivity.ring,
+        connectivity.ring_size,
+        cost,
+    )
+    return cost
+
+
+def collapse_costs(
+    points: FloatArray, quadrics: FloatArray, connectivity: Connectivity
+) -> FloatArray:
+    """Return what the cheapest collapse of every vertex costs, 0 where it has no ordered ring.
+
+    That is the least of vᵀ Q(a) v over the neighbours a: the error by which the target of the
+    collapse is chosen, instead of the sum over the ring (Eq. 36).
+    """
+    cost = np.empty(len(points))
+    run_in_ranges(
+        target_costs,
         len(points),
         points,
         quadrics,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -9,10 +10,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from .._kernels.partition import label
+from .._table import Table
 from .._validate import FloatArray
 from ..mesh.connectivity import Connectivity
 from ..mesh.curvature import bending_energy
-from ..mesh.quadric import build_quadrics, redistribute_quadrics, vertex_costs
+from ..mesh.quadric import build_quadrics, collapse_costs, redistribute_quadrics, vertex_costs
 from ._mutable_level import SurfaceLevel
 
 #: Share of the vertices whose bending energy is told apart; the rest count as the highest.
@@ -58,6 +60,52 @@ class Partition(Protocol):
         """Carry the state to the coarser level."""
 
 
+class QuadricRule(NamedTuple):
+    """What becomes of the quadrics from level to level: a row of :data:`QUADRICS`.
+
+    name : str, what `analyse` takes
+    help : str, one line for lists
+    are_kept : bool, whether a level's quadrics come from those of the finer level
+    """
+
+    name: str
+    help: str
+    are_kept: bool
+
+
+#: The paper's text and, as another reading of it, quadrics of the level's own faces.
+QUADRICS = Table(
+    "quadrics",
+    (
+        QuadricRule("redistributed", "built on the input, handed on (Eqs. 52-53)", True),
+        QuadricRule("rebuilt", "built anew on every level", False),
+    ),
+)
+
+
+class CostRule(NamedTuple):
+    """By what vertices are ranked: a row of :data:`COSTS`.
+
+    name : str, what `analyse` takes
+    help : str, one line for lists
+    costs : callable, from points, quadrics and connectivity to ``(n_vertices,)`` costs
+    """
+
+    name: str
+    help: str
+    costs: Callable[[FloatArray, FloatArray, Connectivity], FloatArray]
+
+
+#: Eq. 36 and, as another reading, the error of the collapse itself.
+COSTS = Table(
+    "cost",
+    (
+        CostRule("ring", "the sum over the neighbours' quadrics (Eq. 36)", vertex_costs),
+        CostRule("collapse", "the least of them, which is that of the collapse", collapse_costs),
+    ),
+)
+
+
 class QuadricPartition:
     """The paper's partition: cheapest quadric and bending cost first (Algorithms 1 and 2).
 
@@ -65,6 +113,10 @@ class QuadricPartition:
     ----------
     bending_weight : float
         Weight of the bending energy against the normalised coordinates.
+    quadrics : str
+        A row of `QUADRICS`.
+    cost : str
+        A row of `COSTS`.
 
     Notes
     -----
@@ -73,23 +125,29 @@ class QuadricPartition:
     scale stays that of the input on all levels, since the quadrics carry it.
     """
 
-    def __init__(self, bending_weight: float = 1.0) -> None:
+    def __init__(
+        self, bending_weight: float = 1.0, quadrics: str = "redistributed", cost: str = "ring"
+    ) -> None:
         self._bending_weight = bending_weight
+        self._keeps_quadrics = QUADRICS.find(quadrics).are_kept
+        self._costs = COSTS.find(cost).costs
         self._energy_scale: float | None = None
         self._quadrics = np.empty((0, 0))
 
     def split(self, view: LevelView, max_odd: int) -> Split:
-        """Label the vertices of a level in order of Eq. 36; ties by index."""
+        """Label the vertices of a level in order of their cost; ties by index."""
         energy = bending_energy(view.points, view.faces, view.connectivity)
         points = np.column_stack([view.points, self._bending_coordinate(energy)])
-        if not self._quadrics.size:
+        if not (self._keeps_quadrics and self._quadrics.size):
             self._quadrics = build_quadrics(points, view.faces, view.connectivity)
-        cost = vertex_costs(points, self._quadrics, view.connectivity)
+        cost = self._costs(points, self._quadrics, view.connectivity)
         order = np.argsort(cost, kind="stable")
         return _label(view, order, points, self._quadrics, max_odd)
 
     def descend(self, split: Split, even: NDArray[np.int32], prediction: csr_array) -> None:
         """Hand the quadrics of the odd vertices to their even neighbours (Eqs. 52-53)."""
+        if not self._keeps_quadrics:
+            return
         self._quadrics = redistribute_quadrics(self._quadrics, split.odd, even, prediction)
 
     def _bending_coordinate(self, energy: FloatArray) -> FloatArray:

@@ -78,7 +78,7 @@ PARTITIONS = Table(
         PartitionRow(
             "quadric", lambda source: orderings.QuadricPartition(**source.options),
             "those of least cost by generalised quadrics and bending energy", "Algorithms 1 and 2",
-            options=("bending_weight",),
+            options=("bending_weight", "quadrics", "cost"),
         ),
         PartitionRow(
             "colouring", lambda source: orderings.ColouringPartition(),

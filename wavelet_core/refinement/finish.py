@@ -71,13 +71,14 @@ def finished(
 
     Notes
     -----
-    A level that keeps a tolerance by the ``"rms"`` norm and an update has heights that are neither
-    the input's nor free to change: it stays as it is.
+    A level that keeps a tolerance by the ``"rms"`` norm or with an update has heights that are
+    neither the input's nor free to change: it stays as it is.
     """
     parameters = pyramid.parameters
     mesh, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
     is_rms, max_error = parameters["norm"] == "rms", parameters["max_error"]
-    stays = (is_rms and max_error is not None) or not (fit or keep_points)
+    is_lifted = is_rms or parameters["update"] != "none"
+    stays = (is_lifted and max_error is not None) or not (fit or keep_points)
     if rounds and (stays or parameters["signal"] != "z"):
         raise OptionError(
             "{0} goes neither with fixed heights nor with {1} 'xyz'; leave one of them out.",

@@ -143,7 +143,9 @@ def refine(
     has a closed form, and (d) turns edges again. At the end all heights are fitted at once. Each is
     judged by all input vertices in the faces that it changes. With ``"max"`` they are judged by
     the sum of the eighth powers of the errors, *our choice*: the largest ones count for nearly all
-    of it, and yet each that falls helps.
+    of it, and yet each that falls helps. Within ``max_error`` it is the squares again: errors that
+    are small in most places leave more room for removals than errors that are alike (1 to 8 %
+    fewer vertices).
 
     References
     ----------
@@ -224,7 +226,13 @@ class _Work:
             ids,
             face_of,
             task.locked,
-            Aim(task.is_largest, task.is_free, tolerance, float(REACH * step) ** 2),
+            Aim(
+                # within a tolerance, errors that are small rather than even leave room for removals
+                task.is_largest and task.max_error is None,
+                task.is_free,
+                tolerance,
+                float(REACH * step) ** 2,
+            ),
         )
         self._error = np.inf
         self.rounds: list[Round] = []

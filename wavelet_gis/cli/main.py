@@ -21,6 +21,7 @@ from types import ModuleType
 
 from wavelet_gis._program import PROGRAM, SCRATCH_PREFIX
 from wavelet_gis.cli import commands, interrupts
+from wavelet_gis.cli.completion import SHELLS, PrintCompletion
 from wavelet_gis.cli.console import Console
 from wavelet_gis.cli.flags import flag_names
 from wavelet_gis.cli.streams import make_standard_streams_usable
@@ -148,6 +149,13 @@ def argument_parser() -> argparse.ArgumentParser:
         epilog=f"'{PROGRAM} COMMAND --help' tells the options of a command.",
     )
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {_version()}")
+    parser.add_argument(
+        "--print-completion",
+        action=PrintCompletion,
+        choices=SHELLS,
+        metavar="SHELL",
+        help=f"print what makes a shell complete the command ({', '.join(SHELLS)}) and exit",
+    )
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
     parsers = [_add_command(subparsers, name, module) for name, module in _commands()]
     for one in parsers:

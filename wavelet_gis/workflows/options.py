@@ -40,7 +40,7 @@ class WaveletOptions(TypedDict, total=False):
     design : a design of the paper, prediction and update in one, such as ``GLMN``; with the paper's
         partition unless another is named
     partition, prediction, update, signal, norm, removal_fraction, outline_tolerance,
-    bending_weight, attribute_weights, locked : see `wavelet_core.analyse`
+    bending_weight, quadrics, cost, attribute_weights, locked : see `wavelet_core.analyse`
     """
 
     design: str | None
@@ -52,6 +52,8 @@ class WaveletOptions(TypedDict, total=False):
     removal_fraction: float | None
     outline_tolerance: float | None
     bending_weight: float | None
+    quadrics: str | None
+    cost: str | None
     attribute_weights: Sequence[float] | None
     locked: ArrayLike | None
 

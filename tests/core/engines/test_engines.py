@@ -39,6 +39,7 @@ DESIGNS = {
     "mean tolerance": {"max_rms": 0.3},
     "moved outline": {"target_vertices": 20, "outline_tolerance": 30.0},
     "GLMN": {"prediction": "GLMN", "levels": 6},
+    "GLMN by the collapse": {"prediction": "GLMN", "quadrics": "rebuilt", "cost": "collapse"},
     "CLORMP": {"prediction": "CLORMP", "levels": 6},
     "UGMO xyz": {"prediction": "UGMO", "levels": 5, "signal": "xyz"},
     "random PL": {"partition": "random", "prediction": "PL", "levels": 6},

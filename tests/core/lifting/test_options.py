@@ -9,9 +9,11 @@ from helpers_meshes import random_delaunay
 
 import wavelet_core
 from wavelet_core import (
+    COSTS,
     NORMS,
     PARTITIONS,
     PREDICTIONS,
+    QUADRICS,
     SIGNALS,
     UPDATES,
     OptionError,
@@ -30,6 +32,8 @@ TABLES = {
     "partition": PARTITIONS,
     "norm": NORMS,
     "signal": SIGNALS,
+    "quadrics": QUADRICS,
+    "cost": COSTS,
 }
 
 
@@ -187,6 +191,8 @@ UNUSED = [
     ({"removal_fraction": 0.25}, "colouring"),
     ({"bending_weight": 1.0}, "surface"),
     ({"bending_weight": 0.5}, "random"),
+    ({"quadrics": "rebuilt"}, "surface"),
+    ({"cost": "ring"}, "colouring"),
     ({"seed": 0}, "surface"),
     ({"seed": 3}, "quadric"),
 ]

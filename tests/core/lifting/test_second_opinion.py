@@ -6,7 +6,7 @@ import pytest
 import reference
 from helpers_meshes import fan, grid_with_holes, random_delaunay
 
-from wavelet_core import analyse
+from wavelet_core import COSTS, QUADRICS, SIGNALS, analyse
 
 MESHES = {
     "delaunay": lambda: random_delaunay(60, n_attributes=2, seed=3),
@@ -149,6 +149,24 @@ def test_any_partition_replays_to_the_same_faces(partition, signal):
         np.testing.assert_array_equal(
             helpers.canonical_faces(faces), helpers.canonical_faces(pyramid.mesh(level).faces)
         )
+
+
+@pytest.mark.parametrize("quadrics", QUADRICS)
+@pytest.mark.parametrize("cost", COSTS)
+@pytest.mark.parametrize("signal", SIGNALS)
+def test_readings_of_the_quadric_partition(quadrics, cost, signal):
+    """The same vertices go, in order, onto the same targets, whichever way the paper is read."""
+    mesh = random_delaunay(70, n_attributes=1, seed=4)
+    options = {"prediction": "geometric", "update": "minimum_norm", "signal": signal}
+    options |= {"bending_weight": 0.1, "cost": cost}
+    pyramid = analyse(mesh, levels=LEVELS, partition="quadric", quadrics=quadrics, **options)
+    analysis = reference.analyse(
+        mesh.vertices, mesh.faces, mesh.attributes, levels=LEVELS, quadrics_of=quadrics, **options
+    )
+    assert len(analysis.steps) == pyramid.n_levels
+    for ours, theirs in zip(reversed(pyramid.steps), analysis.steps, strict=True):
+        np.testing.assert_array_equal(ours.odd, theirs.odd)
+        np.testing.assert_array_equal(ours.target, theirs.target)
 
 
 @pytest.mark.parametrize("signal", ["z", "xyz"])

@@ -185,6 +185,22 @@ def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="W",
         help="weight of bending energy in the paper's cost",
     )
+    names_from(
+        "wavelet_core:QUADRICS",
+        group.add_argument(
+            "--quadrics",
+            metavar="NAME",
+            help="of the paper's partition; another reading than the paper's text is the second of",
+        ),
+    )
+    names_from(
+        "wavelet_core:COSTS",
+        group.add_argument(
+            "--cost",
+            metavar="NAME",
+            help="by which the paper's partition ranks; another reading is the second of",
+        ),
+    )
     group.add_argument(
         "--attribute-weights",
         type=_weights,
@@ -204,6 +220,8 @@ def wavelet_options(arguments: argparse.Namespace) -> WaveletOptions:
         "removal_fraction": arguments.removal_fraction,
         "outline_tolerance": arguments.outline_tolerance,
         "bending_weight": arguments.bending_weight,
+        "quadrics": arguments.quadrics,
+        "cost": arguments.cost,
         "attribute_weights": arguments.attribute_weights,
     }
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import Pyramid, TriangleMesh, analyse
+from wavelet_core import PARTITIONS, Pyramid, TriangleMesh, analyse
 from wavelet_core.errors import OptionError
 from wavelet_core.features.signature import Signature, plain_features, scale_features
 from wavelet_core.progress import Progress, part_of
@@ -34,12 +34,7 @@ DERIVED_FROM_CLASSES = ("hag", "heightaboveground", "height_above_ground")
 MAX_VALUES_OF_COPY, PURITY_OF_COPY = 256, 0.999
 
 #: Options of an analysis that only one partition takes.
-_OWN_OPTIONS = {
-    "bending_weight": "quadric",
-    "seed": "random",
-    "norm": "surface",
-    "removal_fraction": "surface",
-}
+_OWN_OPTIONS = {name: row.name for row in PARTITIONS.values() for name in row.options}
 
 
 @dataclass(frozen=True, slots=True)
