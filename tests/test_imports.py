@@ -38,6 +38,7 @@ ROOMS = {
         "errors",
         "_fields",
         "_program",
+        "_memory",
         "progress",
         "notes",
         "crs",

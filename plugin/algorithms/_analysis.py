@@ -13,6 +13,7 @@ from ..parameters.analysis_options import (
     design_options,
     stop_rules,
 )
+from ..parameters.choices import choice
 from ..parameters.pyramid import add_figure_outputs, figures, log_levels, save
 from ..parameters.request import Request
 from ..ui.enums import POLYGONS
@@ -42,8 +43,17 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
             ),
             tr(
                 "One GeoPackage with everything: the arrays from which every level is rebuilt "
-                "exactly, and the coarse TIN and the details of each level as styled layers."
+                "exactly, and the coarse TIN and details as styled layers."
             ),
+        )
+        self.add(
+            choice("LAYERS", tr("Layers in the pyramid"), ("auto", "all", "coarse", "none")),
+            tr(
+                "Which layers the pyramid file has, which is complete without them: the coarse TIN "
+                "and the details of the coarser levels, up to 100,000 features (auto), those of "
+                "all levels, the coarse TIN only, or none."
+            ),
+            advanced=True,
         )
         self.add(
             QgsProcessingParameterFeatureSink(
@@ -92,7 +102,7 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         analysis = request.computed(compute, 0.15, 0.75)
         geo = analysis.geo
         log_levels(request, geo)
-        save(request, geo, output, 0.75, 0.95)
+        save(request, geo, output, 0.75, 0.95, request.text("LAYERS") or "auto")
         request.figures = {**figures(geo), **self.more_figures(request, geo)}
         results = {"OUTPUT": output, **request.figures}
         if request.wants("COARSE_TIN"):

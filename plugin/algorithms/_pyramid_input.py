@@ -34,14 +34,19 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
             return tr("{}: there is no such file; choose a pyramid.").format(path)
         return None
 
-    def geo_pyramid(self, request: Request) -> GeoPyramid:
-        """Return the pyramid in the file."""
+    def geo_pyramid(
+        self, request: Request, level: int | None = None, *, only_input: bool = False
+    ) -> GeoPyramid:
+        """Return the pyramid in the file, or no more of it than has a level, or gives the input."""
+        from wavelet_gis.io.pyramid.pyramid_file import read_input
         from wavelet_gis.workflows.open import load
 
         request.stage(tr("Reading the pyramid"))
         # A layer of the file may have been handed on by a model: 'file.gpkg|layername=coarse_tin'.
         path = request.input_file("INPUT")
-        geo = request.computed(lambda work: load(path).geo, 0.0, 0.05)
+        geo = request.computed(
+            lambda work: read_input(path) if only_input else load(path, level=level).geo, 0.0, 0.05
+        )
         for line in geo.history:
             request.say(tr("Changed since its analysis: {}").format(line))
         return geo

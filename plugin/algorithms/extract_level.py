@@ -139,11 +139,11 @@ class ExtractLevel(PyramidAlgorithm):
         """Synthesise the level and write what was asked for."""
         from wavelet_gis.workflows.extract import extract
 
-        geo = self.geo_pyramid(request)
-        log_levels(request, geo)
-        request.stage(tr("Synthesising the surface"))
         vertices, max_error = request.whole("VERTICES_WANTED"), request.number("MAX_ERROR")
         is_level = vertices is None and max_error is None
+        geo = self.geo_pyramid(request, (request.whole("LEVEL") or 0) if is_level else None)
+        log_levels(request, geo)
+        request.stage(tr("Synthesising the surface"))
         level = checked_level(geo, request.whole("LEVEL") or 0) if is_level else None
         surface = request.computed(
             lambda work: extract(geo, level=level, vertices=vertices, max_error=max_error),

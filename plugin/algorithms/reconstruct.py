@@ -73,8 +73,8 @@ class Reconstruct(PyramidAlgorithm):
         """Synthesise, restore, write what was asked for."""
         from wavelet_gis.workflows.reconstruct import reconstruct
 
-        geo = self.geo_pyramid(request)
-        request.stage(tr("Synthesising the finest level"))
+        geo = self.geo_pyramid(request, only_input=True)
+        request.stage(tr("Restoring the input"))
         restored = request.computed(lambda work: reconstruct(geo), 0.05, 0.6)
         request.stage(tr("Writing {}").format(restored.size))
         results = write_restored(request, restored)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingOutputNumber
@@ -18,7 +17,14 @@ if TYPE_CHECKING:
     from .request import Request
 
 
-def save(request: Request, geo: GeoPyramid, path: str, start: float, stop: float) -> None:
+def save(
+    request: Request,
+    geo: GeoPyramid,
+    path: str,
+    start: float,
+    stop: float,
+    layers: str = "auto",
+) -> None:
     """Write a pyramid with its layers as a GeoPackage, whole or not at all; it replaces another.
 
     Parameters
@@ -31,27 +37,29 @@ def save(request: Request, geo: GeoPyramid, path: str, start: float, stop: float
         Where to.
     start, stop : float
         The part of the whole work that this is.
+    layers : {"auto", "all", "coarse", "none"}
+        See `wavelet_gis.products.layers.pyramid_layers`.
     """
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
-    from wavelet_gis.products.layers import coarse_layers, detail_layers
+    from wavelet_gis.products.layers import n_features, pyramid_layers
 
     from ..qgis_io.geopackage import add_layers
 
     request.stage(tr("Writing the pyramid"))
     middle = (start + stop) / 2
     with new_file(path, overwrite=True) as scratch:
-        write_pyramid(scratch, geo, request.progress(start, middle))
-        layers = chain(coarse_layers(geo), detail_layers(geo))
-        n_faces = geo.pyramid.mesh(0).n_faces
-        add_layers(
-            scratch,
-            layers,
-            layer_wkt(geo),
-            request.feedback,
-            request.progress(middle, stop),
-            geo.pyramid.n_vertices(geo.pyramid.n_levels) + n_faces,
-        )
+        is_alone = layers == "none"
+        write_pyramid(scratch, geo, request.progress(start, middle), is_alone=is_alone)
+        if not is_alone:
+            add_layers(
+                scratch,
+                pyramid_layers(geo, layers),
+                layer_wkt(geo),
+                request.feedback,
+                request.progress(middle, stop),
+                n_features(geo, layers),
+            )
     request.progress(middle, stop)(1.0)
 
 

@@ -58,12 +58,26 @@ def test_target_vertices(done, tif, tmp_path):
 
 def test_the_layers_that_are_written(done, tif, tmp_path):
     counts = {}
-    for layers in ("all", "coarse", "none"):
+    for layers in ("auto", "all", "coarse", "none"):
         done("analyse", tif, tmp_path / f"{layers}.gpkg", "--levels", 2, "--layers", layers)
         kinds = dict(pyogrio.list_layers(tmp_path / f"{layers}.gpkg"))
         counts[layers] = sum(kind is not None for kind in kinds.values())
         done("reconstruct", tmp_path / f"{layers}.gpkg", tmp_path / f"{layers}.tif")
-    assert counts == {"all": 4, "coarse": 2, "none": 0}
+    assert counts == {"auto": 4, "all": 4, "coarse": 2, "none": 0}
+
+
+def test_layers_in_proportion_tell_what_they_leave_out(done, tif, tmp_path, monkeypatch):
+    monkeypatch.setattr("wavelet_gis.products.layers.MOST_FEATURES", 2000)
+    said = done("analyse", tif, tmp_path / "a.gpkg", "--target-vertices", 300)
+    kinds = dict(pyogrio.list_layers(tmp_path / "a.gpkg"))
+    n_details = sum(name.startswith("detail_level") for name in kinds)
+    pyramid = read_pyramid(tmp_path / "a.gpkg").pyramid
+    assert 0 < n_details < pyramid.n_levels
+    n_features = pyramid.n_vertices(n_details) + pyramid.n_faces(0)
+    assert n_features <= 2000 < n_features + pyramid.steps[n_details].n_odd
+    left_out = f"details of the {pyramid.n_levels - n_details} finest levels"
+    assert left_out in said.out
+    assert "--layers all" in said.out
 
 
 def test_errors_may_be_left_out(done, tif, tmp_path):

@@ -164,7 +164,7 @@ def _rank(level, block, known, barred):
     for i in range(surface.z.shape[1]):
         before_it += (surface.z[v, i] - surface.measured[v, i]) ** 2
     by_sum = limits.norm == LEAST_SQUARES
-    targets = _legal_targets(block, known, barred, surface.measured, limits)
+    targets = legal_targets(block, known, barred, surface.measured, limits)
     bound = limits.cutoff + before_it if by_sum else np.full(len(v), limits.cutoff)
     chosen, best, is_cut = _best_targets(block, targets, known, bound, limits)
     only_bound = (chosen == NONE) & (targets.n_legal > 0) & is_cut & (limits.cutoff < np.inf)
@@ -194,7 +194,7 @@ def _step_of(n, squared, height_step):
     return height_step * (2.0 * np.sqrt(n * squared) + n * height_step) + RELATIVE_STEP * squared
 
 
-def _legal_targets(block, known, barred, measured, limits):
+def legal_targets(block, known, barred, measured, limits):
     n, size = block.ring.shape
     places = np.array([0, size - 1]) if block.is_outline else np.arange(size)
     reach = block.rx**2 + block.ry**2

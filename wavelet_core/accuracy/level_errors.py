@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import repeat
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,9 @@ from ..lifting.pyramid import Pyramid
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Progress, report
+
+#: Heights that differ by no more than this part of the largest are those of one point.
+SAME_HEIGHT = 1e-9
 
 
 class LevelErrors(NamedTuple):
@@ -67,6 +71,9 @@ def level_errors(
     reference = _columns(finest)
     extent = reference.max(axis=0) - reference.min(axis=0)
     scale = np.where(extent > 0, extent, 1.0)
+    merged = _merged_points(finest, points)
+    if pyramid.measured is not None and merged is not None:
+        return _from_analysis(pyramid, progress, merged, extent)
     rows = []
     for level, mesh in enumerate(pyramid):
         ids = pyramid.vertex_ids(level)
@@ -82,6 +89,54 @@ def level_errors(
                 float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
                 float(np.abs(covered).max(initial=0.0)),
                 len(errors) - len(covered),
+            )
+        )
+        report(
+            progress,
+            len(rows) / len(pyramid),
+            "measuring the errors was cancelled; nothing was kept.",
+        )
+    return rows
+
+
+def _merged_points(finest: TriangleMesh, points: FloatArray) -> FloatArray | None:
+    """Return the points beyond those that the vertices are; None where these lie elsewhere."""
+    n = finest.n_vertices
+    if len(points) < n:
+        return None
+    height = finest.vertices[:, 2]
+    apart = np.abs(points[:n, 2] - height).max(initial=0.0)
+    is_same = apart <= SAME_HEIGHT * np.abs(height).max(initial=0.0)
+    return points[n:] if is_same else None
+
+
+def _from_analysis(
+    pyramid: Pyramid, progress: Progress | None, merged: FloatArray, extent: FloatArray
+) -> list[LevelErrors]:
+    """Return the errors that the analysis measured, and those of points that it did not have."""
+    assert pyramid.measured is not None
+    scale = np.where(extent > 0, extent, 1.0)[2:]
+    n_points = pyramid.n_vertices(pyramid.n_levels) + len(merged)
+    meshes = iter(pyramid) if len(merged) else repeat(None)
+    rows = []
+    for level, (figures, mesh) in enumerate(zip(pyramid.measured, meshes, strict=False)):
+        squared, largest, n_uncovered = figures.squared_errors, figures.largest_error, 0
+        if mesh is not None:
+            errors = surface_errors(mesh, merged)
+            covered = errors[np.isfinite(errors)]
+            squared += float((covered**2).sum())
+            largest = max(largest, float(np.abs(covered).max(initial=0.0)))
+            n_uncovered = len(errors) - len(covered)
+        relative = float((figures.squared_changes / scale**2).sum()) / figures.n_vertices
+        rows.append(
+            LevelErrors(
+                level,
+                figures.n_vertices,
+                figures.n_faces,
+                float(np.sqrt(relative)),
+                float(np.sqrt(squared / max(n_points - n_uncovered, 1))),
+                largest,
+                n_uncovered,
             )
         )
         report(

@@ -15,6 +15,7 @@ from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
+from ..partition._mutable_level import LevelFigures
 from ..partition.error_guided import DEFAULT_LEVELS, SurfaceRules, analyse_surface
 from ..partition.orderings import LevelView, Partition
 from ..partition.registry import PARTITIONS, PartitionInput
@@ -197,7 +198,8 @@ class _Analysis:
         self._horizontal = mesh.vertices[:, :2] if self._in_plan else None
         self._locked = locked
         self._integrals = np.ones(mesh.n_vertices)
-        self._scale = _Normalisation(mesh, options)
+        self._figures: tuple[LevelFigures, ...] | None = None
+        self._scale = Normalisation(mesh, options.attribute_weights)
 
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
@@ -217,6 +219,7 @@ class _Analysis:
             update=self._options.update,
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
+            measured=self._figures,
         )
         record = stop_record(
             self._stopped_by,
@@ -272,7 +275,21 @@ class _Analysis:
         )
         self._coefficients = result.coarse
         self._stopped_by = result.stopped_by
+        self._figures = self._in_input_units(result.figures)
         return [Step(*step) for step in result.steps]
+
+    def _in_input_units(self, figures: list[LevelFigures]) -> tuple[LevelFigures, ...] | None:
+        """Return the figures of the levels, the coarsest first; None where they are not those.
+
+        With a tolerance of the outline, input vertices that no face covers count in the analysis.
+        """
+        if self._options.outline_tolerance:
+            return None
+        squares = self._scale.height_weights() ** 2
+        return tuple(
+            level._replace(squared_changes=level.squared_changes / squares)
+            for level in reversed(figures)
+        )
 
     def _make_partition(self) -> Partition:
         columns = np.hstack([self._mesh.vertices[:, 2:], self._mesh.attributes])
@@ -385,17 +402,17 @@ def height_weights(extent: FloatArray, attribute_weights: Sequence[float]) -> Fl
     return weights
 
 
-class _Normalisation:
+class Normalisation:
     """Centre and range of the input's columns, by which cost and prediction measure."""
 
-    def __init__(self, mesh: TriangleMesh, options: AnalysisOptions) -> None:
+    def __init__(self, mesh: TriangleMesh, attribute_weights: Sequence[float]) -> None:
         columns = [*mesh.vertices.T, *mesh.attributes.T]
         low = np.array([column.min() for column in columns])
         extent = np.array([np.ptp(column) for column in columns])
         self._centre = low + extent / 2
-        weights = np.array((1.0, 1.0, 1.0, *options.attribute_weights))
+        weights = np.array((1.0, 1.0, 1.0, *attribute_weights))
         self._factor = weights / np.where(extent > 0, extent, 1.0)
-        self._height_weights = height_weights(extent[2:], options.attribute_weights)
+        self._height_weights = height_weights(extent[2:], attribute_weights)
 
     def height_weights(self) -> FloatArray:
         """Return what errors of z and of each attribute count for against errors of z."""

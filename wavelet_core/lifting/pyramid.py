@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, SupportsIndex
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from .._validate import FloatArray, IntArray, are_equal, counted, frozen, owned
 from ..errors import OptionError, PyramidError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
+from ..partition._mutable_level import LevelFigures
 from ..partition.stopping import StopRecord
 from ..progress import Progress
 from ._checks import check_parts
@@ -56,6 +57,17 @@ class Detail:
         return f"<Detail {vertices}, {counted(self.vectors.shape[1], 'channel')}>"
 
 
+class PyramidPart(NamedTuple):
+    """What a pyramid that is only the coarse levels of another has from those above it.
+
+    ids : (n,) int32, of its finest level's vertices in the input
+    integrals : (n,) float64, of the scaling functions there
+    """
+
+    ids: NDArray[np.int32]
+    integrals: FloatArray
+
+
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Pyramid:
     """A wavelet decomposition of a mesh: level 0 is the coarsest, level ``n_levels`` the input.
@@ -83,6 +95,10 @@ class Pyramid:
         Every option of the analysis, resolved.
     stop : StopRecord or None
         Why the analysis ended; None for a pyramid that comes from elsewhere.
+    part : PyramidPart or None
+        Where its finest level is not the input but a level of a larger pyramid.
+    measured : tuple of LevelFigures or None
+        Sizes and errors of every level, the coarsest first, where the analysis has measured them.
 
     Examples
     --------
@@ -104,6 +120,8 @@ class Pyramid:
     locked: NDArray[np.bool_] | None = None
     parameters: Mapping[str, Any] = field(default_factory=dict)
     stop: StopRecord | None = field(default=None, compare=False)
+    part: PyramidPart | None = field(default=None, compare=False)
+    measured: tuple[LevelFigures, ...] | None = field(default=None, compare=False)
 
     @classmethod
     def from_parts(
@@ -202,7 +220,7 @@ class Pyramid:
     def vertex_ids(self, level: int) -> IntArray:
         """Return the ids, in the input, of the vertices of a level; ascending."""
         self._require_level(level)
-        return self._ids_by_level(level)[level].astype(np.int64)
+        return self._in_input(self._ids_by_level(level)[level])
 
     def mesh(self, level: int) -> TriangleMesh:
         """Return the mesh of a level, synthesised from the coarsest one.
@@ -235,14 +253,17 @@ class Pyramid:
                 yield finer - 1, self._detail_layer(step, ids[finer], coefficients)
 
     def _detail_layer(self, step: Step, ids: NDArray[np.int32], coefficients: FloatArray) -> Detail:
-        vertex_ids = ids[step.odd].astype(np.int64)
         if self.horizontal is None:
             positions = coefficients[step.odd, :3]
         else:
-            positions = np.column_stack([self.horizontal[vertex_ids], coefficients[step.odd, 0]])
+            plan = self.horizontal[ids[step.odd]]
+            positions = np.column_stack([plan, coefficients[step.odd, 0]])
         magnitude = np.linalg.norm(step.details, axis=1)
         return Detail(
-            frozen(vertex_ids), frozen(positions), frozen(step.details), frozen(magnitude)
+            frozen(self._in_input(ids[step.odd])),
+            frozen(positions),
+            frozen(step.details),
+            frozen(magnitude),
         )
 
     def filters(self, level: int) -> FilterPair:
@@ -372,7 +393,7 @@ class Pyramid:
 
     def with_parts(self, **changes: Any) -> Pyramid:
         """Return a pyramid of the same topology with other coarse coefficients or steps."""
-        return replace(self, **changes)
+        return replace(self, **{"measured": None, **changes})
 
     # -- walks through the levels ----------------------------------------------------------------
 
@@ -388,6 +409,10 @@ class Pyramid:
                 f"there are no details at level {level}; they are at 0 to {self.n_levels - 1}.",
                 level,
             )
+
+    def _in_input(self, ids: NDArray[np.int32]) -> IntArray:
+        """Return ids of the input from those of the finest level."""
+        return (ids if self.part is None else self.part.ids[ids]).astype(np.int64)
 
     def _locked(self, ids: NDArray) -> NDArray[np.bool_]:
         if self.locked is None:
@@ -424,7 +449,8 @@ class Pyramid:
         return merged_faces(self.faces, position)
 
     def _integrals_by_level(self, lowest: int) -> dict[int, FloatArray]:
-        integrals = np.ones(self.n_vertices(self.n_levels))
+        n_finest = self.n_vertices(self.n_levels)
+        integrals = np.ones(n_finest) if self.part is None else self.part.integrals
         by_level = {self.n_levels: integrals}
         for level in range(self.n_levels - 1, lowest - 1, -1):
             step = self.steps[level]

@@ -18,7 +18,10 @@ def coarse_integrals(
     prediction: csr_array, odd_integrals: FloatArray, even_integrals: FloatArray
 ) -> FloatArray:
     """Return the integrals of the coarse scaling functions (Eqs. 23 and 47)."""
-    return even_integrals + prediction.T @ odd_integrals
+    # one entry after the other, as `update_heights` adds them: the bits are the same
+    added = prediction.data * np.repeat(odd_integrals, np.diff(prediction.indptr))
+    places = np.concatenate([np.arange(len(even_integrals)), prediction.indices])
+    return np.bincount(places, np.concatenate([even_integrals, added])).astype(np.float64)
 
 
 class Support(NamedTuple):

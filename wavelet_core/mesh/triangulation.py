@@ -228,3 +228,17 @@ def _peelable(faces: IntArray, sliver: IntArray, n_vertices: int) -> NDArray[np.
             doomed.append(face)
             n_faces_of[faces[face]] -= 1
     return np.array(doomed, dtype=np.int64)
+
+
+def canonical_faces(faces: NDArray[np.integer]) -> NDArray[np.int64]:
+    """Return faces in the one order that they alone decide: the lowest vertex first, sorted.
+
+    Examples
+    --------
+    >>> canonical_faces(np.array([[3, 1, 2], [2, 0, 1]])).tolist()
+    [[0, 1, 2], [1, 2, 3]]
+    """
+    rows = np.arange(len(faces))[:, None]
+    turn = np.argmin(faces, axis=1)[:, None]
+    turned = faces.astype(np.int64)[rows, (turn + np.arange(3)) % 3]
+    return turned[np.lexsort((turned[:, 2], turned[:, 1], turned[:, 0]))]

@@ -77,6 +77,23 @@ class CollapseStep(NamedTuple):
     details: FloatArray
 
 
+class LevelFigures(NamedTuple):
+    """Sizes and errors of a level.
+
+    n_vertices, n_faces : int
+    squared_errors : float, sum of the squared height errors of all input vertices
+    largest_error : float, the largest of them
+    squared_changes : (c,) float64, of each weighted column the sum of the squared differences of
+        the level's vertices from the input
+    """
+
+    n_vertices: int
+    n_faces: int
+    squared_errors: float
+    largest_error: float
+    squared_changes: FloatArray
+
+
 class SurfaceLevel:
     """The present level; its vertices and faces live in arrays with gaps.
 
@@ -98,6 +115,9 @@ class SurfaceLevel:
         outline vertex goes only where the outline runs straight.
     """
 
+    #: Whether the removed vertices are kept, face by face, and the errors at them.
+    keeps_points = True
+
     def __init__(
         self,
         plan: FloatArray,
@@ -107,15 +127,30 @@ class SurfaceLevel:
         with_update: bool,
         outline_tolerance: float = 0.0,
     ) -> None:
-        n_vertices, n_faces, n_channels = len(plan), len(faces), heights.shape[1]
-        self._mesh, n_fans = _half_edges(faces, n_vertices)
         centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
         # about a local origin also vertically, so that sums of squares keep their digits
         self._z_origin = heights.min(axis=0) + np.ptp(heights, axis=0) / 2
-        local = heights - self._z_origin
+        self._least_limit = (NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))) ** 2
+        self._cost_limit = 0.0
+        self._set_up(plan - centre, heights - self._z_origin, faces, locked, with_update,
+                     outline_tolerance, HEIGHT_STEP * float(np.abs(heights).max()))  # fmt: skip
+
+    def _set_up(
+        self,
+        plan: FloatArray,
+        local: FloatArray,
+        faces: NDArray[np.int32],
+        locked: NDArray[np.bool_],
+        with_update: bool,
+        outline_tolerance: float,
+        height_step: float,
+    ) -> None:
+        """Make the arrays; x, y and heights are from their local origins."""
+        n_vertices, n_faces, n_channels = len(plan), len(faces), local.shape[1]
+        self._mesh, n_fans = _half_edges(faces, n_vertices)
         self._surface = Surface(
-            np.ascontiguousarray(plan[:, 0] - centre[0]),
-            np.ascontiguousarray(plan[:, 1] - centre[1]),
+            np.ascontiguousarray(plan[:, 0]),
+            np.ascontiguousarray(plan[:, 1]),
             local.copy(),
             local,
         )
@@ -129,15 +164,14 @@ class SurfaceLevel:
         self._n_used = 0
         self.n_input = n_vertices
         self.n_vertices = n_vertices
-        self._height_step = HEIGHT_STEP * float(np.abs(heights).max())
-        self._least_limit = (NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))) ** 2
-        self._cost_limit = 0.0
+        self._height_step = height_step
         self._vertices = VertexState.of_input(locked, locked | (n_fans != 1))
         self._faces = FaceState.of_input(n_faces, n_channels)
         self._outline = tolerant_outline(
             outline_tolerance, self._surface.x, self._surface.y, self._mesh, n_fans
         )
-        n_corners, n_stars = (3 * n_faces, n_vertices) if with_update else (0, 0)
+        has_moments = with_update and self.keeps_points
+        n_corners, n_stars = (3 * n_faces, n_vertices) if has_moments else (0, 0)
         self._moments = Moments(
             np.zeros((n_corners, n_channels), np.float32),
             np.zeros(n_corners, np.float32),
@@ -159,6 +193,18 @@ class SurfaceLevel:
     def costs(self, slots: NDArray[np.int32]) -> FloatArray:
         """Return the costs of vertices, as last ranked."""
         return self._vertices.cost[slots]
+
+    def figures(self) -> LevelFigures:
+        """Return sizes and errors of the level as it is now."""
+        lives = self._vertices.lives
+        changes = self._surface.z[lives] - self._surface.measured[lives]
+        return LevelFigures(
+            self.n_vertices,
+            int(np.count_nonzero(self._faces.lives)),
+            self.squared_errors(),
+            self.largest_error(),
+            (changes**2).sum(axis=0),
+        )
 
     def squared_errors(self) -> float:
         """Return the sum of the squared height errors of all input vertices."""
@@ -439,7 +485,7 @@ class SurfaceLevel:
         self._faces = self._faces.packed(faces)
         if len(self._outline.ids):
             self._outline = self._outline._replace(ids=self._vertices.ids)
-        if self._with_update:
+        if len(self._moments.weight):
             n_channels = self._moments.slope.shape[1]
             self._moments = Moments(
                 self._moments.slope.reshape(-1, 3, n_channels)[faces].reshape(-1, n_channels),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._validate import FloatArray, frozen
-from ._mutable_level import CollapseStep, SurfaceLevel
+from ._mutable_level import CollapseStep, LevelFigures, SurfaceLevel
 
 #: Share of the vertices that a level may take, at most, unless more cost nothing. Half of them is
 #: 1 to 6 % worse at the same size and takes 25 % less time. The comparisons that this and the
@@ -112,11 +112,13 @@ class SurfaceAnalysis(NamedTuple):
     """Coarse coefficients ``(n_coarse, n_channels)``, and the steps, the finest first.
 
     stopped_by : one of wavelet_core.partition.stopping.REASONS
+    figures : of every level, the finest first, in weighted columns
     """
 
     coarse: FloatArray
     steps: list[CollapseStep]
     stopped_by: str
+    figures: list[LevelFigures]
 
 
 class _Choice(NamedTuple):
@@ -157,6 +159,7 @@ def analyse_surface(
         plan, columns * weights, faces, locked, rules.with_update, rules.outline_tolerance
     )
     steps: list[CollapseStep] = []
+    figures = [level.figures()]
     n_flat = 0
     cutoff = np.inf
     most = DEFAULT_LEVELS if rules.levels is None else rules.levels
@@ -177,13 +180,14 @@ def analyse_surface(
             break
         level, step = taken
         steps.append(step._replace(details=frozen(step.details / weights)))
+        figures.append(level.figures())
         n_flat += choice.is_flat
         cutoff = choice.next_cutoff
     ids = level.ids
     coarse = level.heights / weights
     unchanged = locked[ids] if rules.with_update else np.ones(len(ids), dtype=bool)
     coarse[unchanged] = columns[ids[unchanged]]  # to the bit
-    return SurfaceAnalysis(coarse, steps, stopped_by)
+    return SurfaceAnalysis(coarse, steps, stopped_by, figures)
 
 
 def _choose(level: SurfaceLevel, rules: SurfaceRules, cutoff: float) -> _Choice | None:

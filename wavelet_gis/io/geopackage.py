@@ -115,9 +115,24 @@ CREATE TABLE layer_styles (
 LayerStyle = tuple[str, str, str, str]
 
 
-def create_geopackage(path: str | os.PathLike[str]) -> None:
-    """Create an empty GeoPackage 1.2."""
+#: Bytes in a page of a file with layers, and of a small one of plain tables alone: each table and
+#: index takes one page at least, some twenty in all.
+PAGE_BYTES = 4096
+SMALL_PAGE_BYTES = 512
+
+
+def create_geopackage(path: str | os.PathLike[str], page_bytes: int = PAGE_BYTES) -> None:
+    """Create an empty GeoPackage 1.2.
+
+    Parameters
+    ----------
+    path : path
+        A file that does not exist yet.
+    page_bytes : int
+        A power of two, from 512 on.
+    """
     with open_for_writing(path) as connection:
+        connection.execute(f"PRAGMA page_size = {int(page_bytes)}")
         connection.executescript(_SCHEMA)
         rows = [
             ("Undefined Cartesian SRS", -1, "NONE", -1, "undefined", "undefined Cartesian"),

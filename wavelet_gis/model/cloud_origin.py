@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.gaps import PointGaps, faces_within, gaps_of
-from wavelet_core.mesh.triangulation import delaunay_faces
+from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError, PointCloudWarning
@@ -21,8 +21,10 @@ from wavelet_gis.model.cloud_aside import DUPLICATE_RULES, Aside, MergedHeights,
 from wavelet_gis.model.exact_restore import (
     CORRECTIONS,
     ExactColumn,
+    KeptColumn,
     checksum,
-    exact_column,
+    column_from_parts,
+    kept_column,
     nearest_of_dtype,
     number_dtype,
 )
@@ -56,9 +58,9 @@ class CloudOrigin:
         X, Y, Z of each, less those of its vertex.
     dropped_attributes : tuple of (n_dropped,) arrays
         Their attributes as stored.
-    corrections : tuple of ExactColumn, or None
-        What rounding loses, for X, Y, Z and each attribute; None once the pyramid has been
-        altered (filtered).
+    corrections : tuple of KeptColumn or ExactColumn, or None
+        What gives X, Y, Z and each attribute of the vertices back to the bit; None once the
+        pyramid has been altered (filtered).
     checksum : str
         SHA-256 of the original columns.
     aside : Aside
@@ -79,7 +81,7 @@ class CloudOrigin:
     representative: NDArray[np.int64]
     differences: NDArray[np.int64]
     dropped_attributes: tuple[NDArray[Any], ...]
-    corrections: tuple[ExactColumn, ...] | None
+    corrections: tuple[KeptColumn | ExactColumn, ...] | None
     checksum: str
     aside: Aside = _NOTHING_ASIDE
     duplicates: str = "lowest"
@@ -146,7 +148,7 @@ class CloudOrigin:
         originals = [column[kept] for column in cloud.columns()]
         originals[2][self.shifts[:, 0]] -= self.shifts[:, 1].astype(np.int32)
         columns = tuple(
-            exact_column(original, approximate)
+            kept_column(original, approximate)
             for original, approximate in zip(originals, self._approximate(mesh, frame), strict=True)
         )
         return replace(self, corrections=columns)
@@ -210,6 +212,40 @@ class CloudOrigin:
         of_vertices[self.shifts[:, 0], 2] += self.shifts[:, 1] * unit
         merged[:, 2] += self.differences[:, 2] * unit
         return np.concatenate([of_vertices, merged])
+
+    @property
+    def kept_places(self) -> NDArray[np.int64] | None:
+        """X and Y of the vertices as stored, ``(n_vertices, 2)``; None where they are not kept."""
+        kept = [column.values for column in self.corrections or () if hasattr(column, "values")]
+        if len(kept) < 2 or len({len(values) for values in kept[:2]}) > 1:
+            return None
+        return np.column_stack(kept[:2]).astype(np.int64)
+
+    def kept_mesh(
+        self, frame: LocalFrame, faces: NDArray[np.int32] | None = None
+    ) -> TriangleMesh | None:
+        """Return the mesh that was analysed, to the bit; None where it is not kept.
+
+        Parameters
+        ----------
+        frame : LocalFrame
+        faces : (n_faces, 3) int32
+            Of the mesh, which the points by themselves do not tell.
+        """
+        kept = self.corrections
+        if faces is None or kept is None:
+            return None
+        columns = [column.values for column in kept if isinstance(column, KeptColumn)]
+        if len(columns) < len(kept):
+            return None
+        if any(len(values) != self.n_vertices for values in columns):
+            raise PyramidError("the cloud has other points than numbers; analyse the input anew.")
+        vertices = np.column_stack(columns[:3]) * self.cloud.scales + self.cloud.offsets
+        attributes = np.empty((self.n_vertices, len(columns) - 3))
+        for k, attribute in enumerate(self.cloud.attributes):
+            attributes[:, k] = replace(attribute, values=columns[3 + k]).lifted()
+        names = tuple(attribute.name for attribute in self.cloud.attributes)
+        return TriangleMesh(frame.to_local(vertices), faces, attributes, names)
 
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> PointCloud:
         """Return the points of the finest mesh of a pyramid, in their first order.
@@ -373,7 +409,7 @@ class CloudOrigin:
         corrections = None
         if CORRECTIONS in stored:
             corrections = tuple(
-                ExactColumn.from_parts(f"source/{CORRECTIONS}_{k}", column, arrays)
+                column_from_parts(f"source/{CORRECTIONS}_{k}", column, arrays)
                 for k, column in enumerate(stored.objects(CORRECTIONS))
             )
         origin = cls(
@@ -505,6 +541,7 @@ def cloud_mesh(
     gaps = gaps_of(vertices[:, :2], faces)
     origin = replace(origin, spacing=gaps.spacing)
     faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
+    faces = canonical_faces(faces)  # an order that need not be stored
     _tell_of_merging(name, origin)
     return TriangleMesh(vertices, faces, attributes, names), origin
 

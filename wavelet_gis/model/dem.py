@@ -20,8 +20,10 @@ from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.exact_restore import (
     CORRECTIONS,
     ExactColumn,
+    KeptColumn,
     checksum,
-    exact_column,
+    column_from_parts,
+    kept_column,
     nearest_of_dtype,
     number_dtype,
 )
@@ -31,6 +33,7 @@ __all__ = [
     "GridGeometry",
     "InputGrid",
     "RasterOrigin",
+    "cell_plan",
     "dem_mesh",
     "grid_bounds",
     "require_sound",
@@ -169,8 +172,9 @@ class RasterOrigin:
         Its cells with data; the i-th of them is vertex i.
     holes : (n_holes,) of the DEM's type
         The numbers that were stored in the other cells.
-    corrections : ExactColumn or None
-        What rounding loses; None once the pyramid has been altered (filtered).
+    corrections : KeptColumn, ExactColumn or None
+        What gives the numbers of the valid cells back to the bit; None once the pyramid has been
+        altered (filtered).
     checksum : str
         SHA-256 of the DEM's numbers.
     """
@@ -183,7 +187,7 @@ class RasterOrigin:
     dtype: np.dtype[Any]
     valid: NDArray[np.bool_]
     holes: NDArray[Any]
-    corrections: ExactColumn | None
+    corrections: KeptColumn | ExactColumn | None
     checksum: str
 
     kind = "raster"
@@ -209,7 +213,7 @@ class RasterOrigin:
     def with_corrections(self, dem: Dem, mesh: TriangleMesh, frame: LocalFrame) -> RasterOrigin:
         """Return the origin that gives `dem` back exactly from the synthesised `mesh`."""
         approximate = self._values(mesh, frame)
-        return replace(self, corrections=exact_column(dem.values[dem.valid], approximate))
+        return replace(self, corrections=kept_column(dem.values[dem.valid], approximate))
 
     def altered(self) -> RasterOrigin:
         """Return the origin for a pyramid whose coefficients have been changed."""
@@ -231,6 +235,28 @@ class RasterOrigin:
         is_scaled = (self.scale, self.offset) != (1.0, 0.0)
         return InputGrid(self.geometry, self.valid, self.dtype, self.nodata, is_scaled)
 
+    def kept_mesh(
+        self, frame: LocalFrame, faces: NDArray[np.int32] | None = None
+    ) -> TriangleMesh | None:
+        """Return the mesh that was analysed, to the bit; None where it is not kept.
+
+        Parameters
+        ----------
+        frame : LocalFrame
+        faces : (n_faces, 3) int32, optional
+            Instead of those of the grid.
+        """
+        if not isinstance(self.corrections, KeptColumn):
+            return None
+        n_vertices = self.n_vertices
+        if len(self.corrections.values) != n_vertices:
+            raise PyramidError("the raster has other cells than numbers; analyse the input anew.")
+        dem = self._dem(self.corrections.values)
+        if faces is None:
+            return dem_mesh(dem, frame)
+        plan = cell_plan(self.geometry, self.valid, frame, np.arange(n_vertices))
+        return TriangleMesh(np.column_stack([plan, frame.local_z(dem.elevations())]), faces)
+
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> Dem:
         """Return the DEM of the finest mesh of a pyramid.
 
@@ -246,19 +272,22 @@ class RasterOrigin:
                 "only the finest level can be turned back into the raster."
             )
         approximate = self._values(mesh, frame)
+        if self.corrections is None:
+            return self._dem(
+                _avoiding_nodata(nearest_of_dtype(approximate, self.dtype), self.nodata)
+            )
+        dem = self._dem(self.corrections.restore(approximate))
+        if checksum([dem.values]) != self.checksum:
+            raise PyramidError(
+                "the reconstruction is not bit for bit the original (its checksum differs); "
+                "the file is damaged, analyse the input anew."
+            )
+        return dem
+
+    def _dem(self, of_valid: NDArray[Any]) -> Dem:
         values = np.empty(self.geometry.shape, dtype=self.dtype)
         values[~self.valid] = self.holes
-        if self.corrections is None:
-            values[self.valid] = _avoiding_nodata(
-                nearest_of_dtype(approximate, self.dtype), self.nodata
-            )
-        else:
-            values[self.valid] = self.corrections.restore(approximate)
-            if checksum([values]) != self.checksum:
-                raise PyramidError(
-                    "the reconstruction is not bit for bit the original (its checksum differs); "
-                    "the file is damaged, analyse the input anew."
-                )
+        values[self.valid] = of_valid
         return Dem(
             values, self.valid, self.geometry, self.nodata, self.scale, self.offset, self.profile
         )
@@ -330,7 +359,7 @@ class RasterOrigin:
         corrections = None
         if CORRECTIONS in fields:
             described = fields[CORRECTIONS]
-            corrections = ExactColumn.from_parts(f"source/{CORRECTIONS}", described, arrays)
+            corrections = column_from_parts(f"source/{CORRECTIONS}", described, arrays)
             if corrections.dtype != dtype:
                 raise PyramidError(
                     "the raster's corrections have another data type; analyse it anew."
@@ -418,6 +447,33 @@ def dem_mesh(dem: Dem, frame: LocalFrame) -> TriangleMesh:
     x, y = dem.geometry.centres(upright.vertices[:, 0], upright.vertices[:, 1])
     vertices = np.column_stack([frame.local_x(x), frame.local_y(y), upright.vertices[:, 2]])
     return TriangleMesh.from_triangles(vertices, upright.faces)
+
+
+def cell_plan(
+    geometry: GridGeometry,
+    valid: NDArray[np.bool_],
+    frame: LocalFrame,
+    ids: NDArray[np.integer],
+) -> NDArray[np.float64]:
+    """Return x and y, in the working frame, of some vertices of the mesh of `dem_mesh`.
+
+    Parameters
+    ----------
+    geometry : GridGeometry
+    valid : (n_rows, n_columns) bool
+        The cells with data; the i-th of them is vertex i.
+    frame : LocalFrame
+    ids : (n,) integers
+        Vertices.
+    """
+    rows, columns = np.divmod(np.flatnonzero(valid)[ids], geometry.shape[1])
+    if geometry.is_axis_aligned:
+        a, _, c, _, e, f = geometry.transform
+        x = a * (columns.astype(np.float64) + 0.5) + c
+        y = e * (rows.astype(np.float64) + 0.5) + f
+    else:
+        x, y = geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
+    return np.column_stack([frame.local_x(x), frame.local_y(y)])
 
 
 def grid_bounds(geometry: GridGeometry) -> tuple[float, float, float, float]:

@@ -1,7 +1,10 @@
-"""Bit-for-bit originals out of a synthesis that is exact only to rounding.
+"""Bit-for-bit originals beside a synthesis that is exact only to rounding.
 
-A pyramid gives each value back with an error of some 1e-13 of its column's range. The corrections
-keep the little that is missing, so that what came in goes out again, whatever its data type:
+A pyramid gives each value back with an error of some 1e-13 of its column's range. So the column
+that came in is kept beside it (`KeptColumn`): in a pyramid file it is what all else is told by, and
+takes no byte more. Synthesis must come as close to it as it did when the pyramid was made.
+
+Files of format 1 keep instead the little that synthesis lacks (`ExactColumn`):
 
 * a quantum q, a power of two some 500 times larger than the error that was seen;
 * for each value its remainder ``r = a - q round(a / q)``. It is zero for integers, for nearly all
@@ -30,8 +33,11 @@ from wavelet_gis._fields import Fields
 __all__ = [
     "CORRECTIONS",
     "ExactColumn",
+    "KeptColumn",
     "checksum",
+    "column_from_parts",
     "exact_column",
+    "kept_column",
     "nearest_of_dtype",
     "number_dtype",
 ]
@@ -141,6 +147,89 @@ class ExactColumn:
         if not sound:
             raise PyramidError(f"the correction {name} is damaged; write the file anew.")
         return cls(dtype, quantum, remainder, rows, values)
+
+
+@dataclass(frozen=True, slots=True)
+class KeptColumn:
+    """One original column, as it came.
+
+    Attributes
+    ----------
+    values : (n,) integers or floats, little-endian
+    quantum : float
+        Twice what the values of the synthesis may differ by.
+    """
+
+    values: NDArray[Any]
+    quantum: float
+
+    @property
+    def dtype(self) -> np.dtype[Any]:
+        """Data type of the original."""
+        return self.values.dtype
+
+    def restore(self, approximate: NDArray[np.float64]) -> NDArray[Any]:
+        """Return the original column, given the values that synthesis makes of it.
+
+        Raises
+        ------
+        PyramidError
+            When the number of values is not that of the column, or one of them is another.
+        """
+        n = len(approximate)
+        if len(self.values) != n:
+            raise PyramidError(
+                f"there are {len(self.values)} original numbers for {n} values; "
+                "the file is damaged, write it anew."
+            )
+        with np.errstate(invalid="ignore", over="ignore"):
+            is_near = np.abs(approximate - self.values.astype(np.float64)) <= self.quantum / 2
+        if not is_near.all():
+            raise PyramidError(
+                "the reconstruction is not bit for bit the original (levels and details lead to "
+                "other numbers); the file is damaged, analyse the input anew."
+            )
+        return self.values.copy()
+
+    def to_parts(self, name: str) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+        """Return JSON-able fields, and arrays by names that start with `name`."""
+        fields = {"dtype": self.dtype.str, "quantum": self.quantum, "is_kept": True}
+        return fields, {f"{name}/values": self.values}
+
+
+def kept_column(original: NDArray[Any], approximate: NDArray[np.float64]) -> KeptColumn:
+    """Return what keeps `original` beside a synthesis that gives `approximate` for it.
+
+    Parameters
+    ----------
+    original : (n,) integers or floats
+        Finite values as they came.
+    approximate : (n,) float64
+        What synthesis gives for them, in the same unit.
+    """
+    dtype = original.dtype.newbyteorder("<")
+    values = np.ascontiguousarray(original, dtype=dtype)
+    as_floats = values.astype(np.float64)
+    return KeptColumn(values, _quantum(as_floats, approximate, is_integer=dtype.kind in "iu"))
+
+
+def column_from_parts(
+    name: str, fields: dict[str, Any], arrays: dict[str, NDArray[Any]]
+) -> KeptColumn | ExactColumn:
+    """Return the column that the `to_parts` of either kind described.
+
+    Raises
+    ------
+    PyramidError
+        When a part is missing or of another type than it must be.
+    """
+    if "is_kept" not in fields:
+        return ExactColumn.from_parts(name, fields, arrays)
+    stored = Fields(fields, f"the column {name}")
+    quantum, values = stored.number("quantum"), arrays.get(f"{name}/values")
+    if values is None or values.ndim != 1 or values.dtype.str != stored.text("dtype"):
+        raise PyramidError(f"the column {name} is damaged; write the file anew.")
+    return KeptColumn(values, quantum)
 
 
 def exact_column(original: NDArray[Any], approximate: NDArray[np.float64]) -> ExactColumn:

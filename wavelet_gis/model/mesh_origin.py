@@ -34,6 +34,12 @@ class MeshOrigin:
         """Return the origin for a pyramid whose coefficients have been changed."""
         return self
 
+    def kept_mesh(
+        self, frame: LocalFrame, faces: NDArray[Any] | None = None
+    ) -> TriangleMesh | None:
+        """Return None: the input is not kept beside the pyramid."""
+        return None
+
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> TriangleMesh:
         """Return the finest mesh of a pyramid in the coordinates of the input."""
         return mesh_in_file(mesh, frame)

@@ -57,6 +57,18 @@ class Origin(Protocol):
     def altered(self) -> Origin:
         """Return the origin for a pyramid whose coefficients have been changed."""
 
+    def kept_mesh(
+        self, frame: LocalFrame, faces: NDArray[Any] | None = None
+    ) -> TriangleMesh | None:
+        """Return the mesh that was analysed, to the bit; None where it is not kept.
+
+        Parameters
+        ----------
+        frame : LocalFrame
+        faces : (n_faces, 3) int32, optional
+            Of the mesh; those of a raster follow from its cells.
+        """
+
     def restore(self, mesh: TriangleMesh, frame: LocalFrame) -> Original:
         """Return what came in, from the finest mesh of the pyramid.
 

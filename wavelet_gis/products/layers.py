@@ -8,18 +8,37 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from itertools import islice
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
+from wavelet_core import OptionError, TriangleMesh
 from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.notes import note
 from wavelet_gis.products.styles import detail_style, tin_style, vertex_style
 from wavelet_gis.products.wkb import points_wkb, triangles_wkb
 
-__all__ = ["Layer", "coarse_layers", "detail_layer_name", "detail_layers", "tin_layers"]
+__all__ = [
+    "Layer",
+    "Layers",
+    "check_layers",
+    "coarse_layers",
+    "detail_layer_name",
+    "detail_layers",
+    "n_features",
+    "pyramid_layers",
+    "tin_layers",
+]
+
+#: Vector layers of a pyramid file: coarse TIN and all details; those of the coarser levels only, in
+#: proportion; the coarse TIN alone; or none.
+Layers = Literal["auto", "all", "coarse", "none"]
+
+#: Features that "auto" may write: what QGIS shows at once. The coarse TIN is always among them.
+MOST_FEATURES = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +68,77 @@ class Layer:
     style: str
     title: str
     description: str
+
+
+def pyramid_layers(geo: GeoPyramid, layers: str = "auto") -> Iterator[Layer]:
+    """Yield the layers that a pyramid file is to have, and note what is left out.
+
+    Parameters
+    ----------
+    geo : GeoPyramid
+        Where they are taken from.
+    layers : {"auto", "all", "coarse", "none"}
+        Which.
+
+    Raises
+    ------
+    OptionError
+        Another name.
+    """
+    check_layers(layers)
+    if layers == "none":
+        return
+    yield from coarse_layers(geo)
+    n_levels = _n_details(geo, layers)
+    if n_levels:
+        yield from islice(detail_layers(geo), n_levels)
+    n_left_out = geo.pyramid.n_levels - n_levels
+    if layers == "auto" and n_left_out:
+        finer = geo.pyramid.steps[n_levels:]
+        note(
+            "layers_left_out",
+            "the details of the {n_levels} finest levels, {n_features:,} points, are no layers, to "
+            "keep the file small; they are in the pyramid, and {0} all writes them too",
+            "layers",
+            n_levels=n_left_out,
+            n_features=sum(step.n_odd for step in finer),
+        )
+
+
+def n_features(geo: GeoPyramid, layers: str) -> int:
+    """Return how many features those layers have that `pyramid_layers` yields."""
+    if layers == "none":
+        return 0
+    return geo.pyramid.n_vertices(_n_details(geo, layers)) + geo.pyramid.n_faces(0)
+
+
+def _n_details(geo: GeoPyramid, layers: str) -> int:
+    """Return of how many levels, from the coarsest on, the details are layers."""
+    if layers == "auto":
+        return shown_details(geo)
+    return geo.pyramid.n_levels if layers == "all" else 0
+
+
+def check_layers(layers: str) -> None:
+    """Raise `OptionError` unless a choice of layers is one of `Layers`."""
+    if layers not in get_args(Layers):
+        raise OptionError(
+            "{0} is {given!r}; give one of {choices}.",
+            "layers",
+            given=layers,
+            choices=", ".join(get_args(Layers)),
+        )
+
+
+def shown_details(geo: GeoPyramid) -> int:
+    """Return of how many levels, from the coarsest on, the details are layers by themselves."""
+    pyramid = geo.pyramid
+    n_features = pyramid.n_vertices(0) + pyramid.n_faces(0)
+    for level, step in enumerate(pyramid.steps):
+        n_features += step.n_odd
+        if n_features > MOST_FEATURES:
+            return level
+    return pyramid.n_levels
 
 
 def coarse_layers(geo: GeoPyramid, level: int = 0) -> Iterator[Layer]:
@@ -166,7 +256,7 @@ def slopes(mesh: TriangleMesh) -> NDArray[np.float64]:
 
     Examples
     --------
-    >>> from wavelet_core import TriangleMesh
+    >>> from wavelet_core import OptionError, TriangleMesh
     >>> mesh = TriangleMesh([[0, 0, 0], [1, 0, 1], [0, 1, 0]], [[0, 1, 2]])
     >>> slopes(mesh).round(6).tolist()
     [45.0]

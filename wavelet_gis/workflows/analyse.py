@@ -9,6 +9,7 @@ from typing import Any, Unpack
 
 from wavelet_core import Progress, TriangleMesh
 from wavelet_core import analyse as core_analyse
+from wavelet_gis._memory import require_memory
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.origin import Original
 from wavelet_gis.model.terrain import Terrain
@@ -88,7 +89,7 @@ class Analysis:
         self,
         path: str | os.PathLike[str],
         *,
-        layers: Layers = "all",
+        layers: Layers = "auto",
         progress: Progress | None = None,
     ) -> None:
         """Write the pyramid file; see `wavelet_gis.workflows.save.save`."""
@@ -152,12 +153,15 @@ def analyse(
 
     Raises
     ------
+    InputFileError
+        There is less memory than the analysis takes.
     OptionError
         Options that contradict each other or have no meaning.
     Cancelled
         ``progress`` returned False.
     """
     require_terrain(terrain)
+    require_memory(terrain.mesh.n_vertices, 1 + terrain.mesh.attributes.shape[1])
     clock = Clock(on_stage)
     with collected() as notes:
         clock.stage("analyse")
@@ -174,7 +178,8 @@ def analyse(
             **core_options(options),
         )
         note_unreached_size(pyramid, target_vertices)
-        note_moved_outline(terrain.mesh, pyramid.mesh(0), options.get("outline_tolerance"))
+        if options.get("outline_tolerance"):
+            note_moved_outline(terrain.mesh, pyramid.mesh(0), options["outline_tolerance"])
     clock.stage("verify")
     finest = pyramid.synthesise()
     geo = terrain.with_notes([*terrain.notes, *notes]).geo_pyramid(pyramid, finest)

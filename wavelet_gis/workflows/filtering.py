@@ -105,7 +105,7 @@ class Filtered:
         self,
         path: str | os.PathLike[str],
         *,
-        layers: Layers = "all",
+        layers: Layers = "auto",
         progress: Progress | None = None,
     ) -> None:
         """Write it as a pyramid file, or as what the input was, by the suffix.

@@ -262,13 +262,16 @@ def open_input(
     return terrain.with_notes(notes)
 
 
-def load(path: str | os.PathLike[str]) -> Analysis:
+def load(path: str | os.PathLike[str], *, level: int | None = None) -> Analysis:
     """Return the pyramid in a pyramid file, everything in it checked.
 
     Parameters
     ----------
     path : path
         A GeoPackage of any origin.
+    level : int, optional
+        The finest that is wanted: where the file of a large raster holds it without the levels
+        above, no more is read, and the pyramid ends there (`Pyramid.part`).
 
     Raises
     ------
@@ -277,9 +280,9 @@ def load(path: str | os.PathLike[str]) -> Analysis:
     PyramidError
         When its parts are damaged or do not fit together.
     """
-    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import read_levels, read_pyramid
 
-    return Analysis(read_pyramid(path))
+    return Analysis(read_pyramid(path) if level is None else read_levels(path, level))
 
 
 def origin_kind(path: str | os.PathLike[str]) -> str:

@@ -24,7 +24,7 @@ from wavelet_gis.model.origin import Original
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.save import write_tin
 
-__all__ = ["Reconstruction", "check_restored_output", "reconstruct"]
+__all__ = ["Reconstruction", "check_restored_output", "reconstruct", "reconstruct_file"]
 
 Path = str | os.PathLike[str]
 
@@ -87,6 +87,26 @@ def reconstruct(
     geo = pyramid_of(data)
     mesh = geo.pyramid.synthesise() if finest is None else finest
     return Reconstruction(geo, mesh, geo.restore(mesh))
+
+
+def reconstruct_file(path: Path) -> Reconstruction:
+    """Return what the pyramid in a file was made from, without its levels where that can be.
+
+    Parameters
+    ----------
+    path : path
+        A pyramid file.
+
+    Raises
+    ------
+    InputFileError
+        When the file is missing, no GeoPackage, or holds no pyramid.
+    PyramidError
+        When its parts are damaged, or the exact original was due and did not come out.
+    """
+    from wavelet_gis.io.pyramid.pyramid_file import read_input
+
+    return reconstruct(read_input(path))
 
 
 def check_restored_output(

@@ -7,8 +7,7 @@ and vectors itself, can use all else.
 from __future__ import annotations
 
 import os
-from itertools import chain
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +23,7 @@ from wavelet_gis.io.formats import (
 )
 from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.products.layers import Layers, check_layers, pyramid_layers
 
 __all__ = [
     "Layers",
@@ -34,9 +34,6 @@ __all__ = [
     "write_surface_raster",
     "write_tin",
 ]
-
-#: Vector layers of a pyramid file: coarse TIN and details, the coarse TIN alone, or none.
-Layers = Literal["all", "coarse", "none"]
 
 Path = str | os.PathLike[str]
 
@@ -131,7 +128,7 @@ def check_surface_output(
 
 
 def write_pyramid_file(
-    path: Path, geo: GeoPyramid, layers: Layers = "all", progress: Progress | None = None
+    path: Path, geo: GeoPyramid, layers: Layers = "auto", progress: Progress | None = None
 ) -> None:
     """Write a pyramid and its layers to a new GeoPackage.
 
@@ -141,8 +138,9 @@ def write_pyramid_file(
         A file that does not exist yet.
     geo : GeoPyramid
         What to write.
-    layers : {"all", "coarse", "none"}
-        Vector layers beside the pyramid, which is complete without them.
+    layers : {"auto", "all", "coarse", "none"}
+        Vector layers beside the pyramid, which is complete without them; see
+        `wavelet_gis.products.layers.pyramid_layers`.
     progress : callable, optional
         Called with a fraction in [0, 1]; returning False stops with `Cancelled`.
 
@@ -153,22 +151,14 @@ def write_pyramid_file(
     """
     from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
 
-    if layers not in get_args(Layers):
-        raise OptionError(
-            "{0} is {given!r}; give one of {choices}.",
-            "layers",
-            given=layers,
-            choices=", ".join(get_args(Layers)),
-        )
+    check_layers(layers)
     check_output(path, overwrite=True, suffixes=(PYRAMID_SUFFIX,))
-    write_pyramid(path, geo, progress)
+    write_pyramid(path, geo, progress, is_alone=layers == "none")
     if layers == "none":
         return
     from wavelet_gis.io.vector.vector_writer import add_layers
-    from wavelet_gis.products.layers import coarse_layers, detail_layers
 
-    details = detail_layers(geo) if layers == "all" else ()
-    add_layers(path, chain(coarse_layers(geo), details), geo.system)
+    add_layers(path, pyramid_layers(geo, layers), geo.system)
 
 
 def write_tin(

@@ -16,6 +16,7 @@ from wavelet_core.mesh.location import Cover, cover_of, surface_errors
 from wavelet_core.progress import report
 from wavelet_core.refinement.finish import finished
 from wavelet_core.refinement.refine import Round
+from wavelet_gis._memory import require_memory
 from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.cloud_origin import CloudOrigin
 from wavelet_gis.model.terrain import Terrain
@@ -183,12 +184,15 @@ def simplify(
 
     Raises
     ------
+    InputFileError
+        There is less memory than the analysis takes.
     OptionError
         Not just one of the three rules, or options that contradict each other.
     Cancelled
         ``progress`` returned False.
     """
     require_terrain(terrain)
+    require_memory(terrain.mesh.n_vertices, 1 + terrain.mesh.attributes.shape[1])
     if sum(rule is not None for rule in (vertices, max_error, max_rms)) != 1:
         raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
     if refine is not None and refine < 0:
@@ -216,7 +220,8 @@ def simplify(
             **keywords,
         )
         note_unreached_size(pyramid, vertices)
-        note_moved_outline(terrain.mesh, pyramid.mesh(0), options.get("outline_tolerance"))
+        if options.get("outline_tolerance"):
+            note_moved_outline(terrain.mesh, pyramid.mesh(0), options["outline_tolerance"])
     clock.stage("fit")
     tin = finished(
         pyramid,

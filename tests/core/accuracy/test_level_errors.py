@@ -103,3 +103,57 @@ def test_plain_subsampling_has_no_error_of_coefficients():
     pyramid = analyse(random_delaunay(200, seed=2), levels=4, update="none")
     assert all(row.rmse_coefficients < 1e-12 for row in level_errors(pyramid))
     assert level_errors(pyramid)[0].rmse_surface > 0
+
+
+# --- measured by the analysis itself ----------------------------------------------------------
+
+
+def rasterised(mesh, x, y):
+    """Return the heights of a TIN at places, triangle by triangle: nothing of ours is used."""
+    heights = np.full(len(x), np.nan)
+    for face in mesh.faces:
+        a, b, c = mesh.vertices[face]
+        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        at_b = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
+        at_c = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
+        inside = (at_b >= -1e-9) & (at_c >= -1e-9) & (at_b + at_c <= 1 + 1e-9)
+        height = a[2] + at_b * (b[2] - a[2]) + at_c * (c[2] - a[2])
+        heights[inside] = height[inside]
+    return heights
+
+
+@pytest.mark.parametrize("norm", ["rms", "max"])
+def test_what_the_analysis_measured_is_what_a_rasteriser_finds(norm):
+    rng = np.random.default_rng(3)
+    z = 20 * np.sin(np.arange(18) / 3)[:, None] + rng.normal(0, 1, (18, 25))
+    valid = np.ones(z.shape, dtype=bool)
+    valid[5:8, 9:14] = False
+    valid[:2, 1] = valid[1, 0] = False  # the corner cell stands alone
+    mesh = TriangleMesh.from_grid(z, np.arange(25.0), np.arange(18.0), valid=valid)
+    pyramid = analyse(mesh, norm=norm, levels=8)
+    assert pyramid.measured is not None
+    x, y, true = mesh.vertices.T
+    for errors, level in zip(pyramid.errors(), pyramid, strict=True):
+        apart = rasterised(level, x, y) - true
+        assert np.isnan(apart).sum() == 1
+        apart[0] = 0.0  # the cell that stands alone keeps its height
+        assert errors.n_uncovered == 0
+        assert errors.rmse_surface == pytest.approx(np.sqrt(np.mean(apart**2)), abs=1e-9)
+        assert errors.max_error_surface == pytest.approx(np.abs(apart).max(), abs=1e-9)
+        assert (errors.n_vertices, errors.n_faces) == (level.n_vertices, level.n_faces)
+
+
+def test_the_analysis_measures_what_is_measured_without_it():
+    mesh = TriangleMesh.from_grid(
+        np.random.default_rng(1).normal(0, 3, (20, 20)), np.arange(20.0), np.arange(20.0),
+        attributes=np.random.default_rng(2).uniform(0, 255, (20, 20, 2)),
+        attribute_names=("a", "b"),
+    )  # fmt: skip
+    pyramid = analyse(mesh, levels=9)
+    merged = mesh.vertices[::7] + np.array([0.0, 0.0, 2.5])
+    points = np.concatenate([mesh.vertices, merged])
+    for given in (None, points):
+        quick = level_errors(pyramid, points=given)
+        slow = level_errors(pyramid.with_parts(), points=given)
+        for one, other in zip(quick, slow, strict=True):
+            assert one == pytest.approx(other, abs=1e-9)

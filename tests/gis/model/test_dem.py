@@ -190,7 +190,7 @@ def test_damaged_fields_are_refused(damage):
         {"source/valid": np.zeros(3, np.uint8)},
         {"source/valid": np.zeros(250, np.int32)},
         {"source/holes": np.zeros(5)},
-        {"source/ledger/remainder": np.zeros((2, 2))},
+        {"source/ledger/values": np.zeros((2, 2))},
     ],
 )
 def test_damaged_arrays_are_refused(damage):

@@ -81,7 +81,7 @@ def test_a_band_by_levels_and_by_lengths_is_a_contradiction(in_feet):
 def test_names_that_no_list_holds_are_refused(in_feet, tmp_path):
     with pytest.raises(OptionError, match="'majority'; give one of nearest, number"):
         in_feet.file_mesh(in_feet.pyramid.mesh(0), categories="majority")
-    with pytest.raises(OptionError, match="'most'; give one of all, coarse, none"):
+    with pytest.raises(OptionError, match="'most'; give one of auto, all, coarse, none"):
         save(Analysis(in_feet), tmp_path / "a.gpkg", layers="most")
     assert list(tmp_path.iterdir()) == []
 

@@ -267,6 +267,18 @@ def add_overwrite_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--overwrite", action="store_true", help="replace an output that exists")
 
 
+def add_layers_argument(parser: argparse.ArgumentParser, default: str | None = "auto") -> None:
+    """Add the choice of the layers of a pyramid file."""
+    parser.add_argument(
+        "--layers",
+        choices=("auto", "all", "coarse", "none"),
+        default=default,
+        help="vector layers to write beside the pyramid, which is complete without them: the "
+        "coarse TIN and the details of the coarser levels, up to 100,000 features (auto, the "
+        "default), those of all levels, the coarse TIN only, or none",
+    )
+
+
 def _nodata(text: str) -> float | str:
     if text.lower() == "none":
         return "none"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from wavelet_gis.cli.commands._options import (
     INPUTS,
     add_input_arguments,
+    add_layers_argument,
     add_overwrite_argument,
     add_wavelet_arguments,
     open_given,
@@ -45,13 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_wavelet_arguments(parser)
     output = parser.add_argument_group("output")
     add_overwrite_argument(output)  # type: ignore[arg-type]
-    output.add_argument(
-        "--layers",
-        choices=("all", "coarse", "none"),
-        default="all",
-        help="vector layers to write: coarse TIN and details (the default), the coarse TIN only, "
-        "or none; the pyramid is complete without them and a quarter as large",
-    )
+    add_layers_argument(output)  # type: ignore[arg-type]
     output.add_argument(
         "--no-errors",
         dest="measure",

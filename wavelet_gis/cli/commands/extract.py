@@ -57,8 +57,9 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     check_surface_output(
         arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,), **options
     )
+    between = arguments.vertices is not None or arguments.max_error is not None
     surface = extract(
-        load(arguments.file),
+        load(arguments.file, level=None if between else arguments.level or 0),
         level=arguments.level,
         vertices=arguments.vertices,
         max_error=arguments.max_error,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from wavelet_gis.cli.commands._options import add_overwrite_argument
+from wavelet_gis.cli.commands._options import add_layers_argument, add_overwrite_argument
 from wavelet_gis.cli.console import Console
 
 ORDER = 60
@@ -92,6 +92,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="to take noise from (default z); again for others",
     )
     add_overwrite_argument(parser)
+    add_layers_argument(parser, default=None)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
@@ -125,7 +126,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             outliers=arguments.outliers,
             progress=progress,
         )
-    save(filtered, arguments.output, overwrite=arguments.overwrite)
+    layers = {} if arguments.layers is None else {"layers": arguments.layers}
+    save(filtered, arguments.output, overwrite=arguments.overwrite, **layers)
     for line in filtered.changes:
         console.say(line)
     console.say(str(arguments.output))

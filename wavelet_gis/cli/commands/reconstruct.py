@@ -21,15 +21,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output
-    from wavelet_gis.workflows.open import load, origin_kind
-    from wavelet_gis.workflows.reconstruct import check_restored_output, reconstruct
+    from wavelet_gis.workflows.open import origin_kind
+    from wavelet_gis.workflows.reconstruct import check_restored_output, reconstruct_file
     from wavelet_gis.workflows.save import save
 
     check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
     check_restored_output(
         arguments.output, origin_kind(arguments.file), overwrite=arguments.overwrite
     )
-    restored = reconstruct(load(arguments.file))
+    restored = reconstruct_file(arguments.file)
     save(restored, arguments.output, overwrite=arguments.overwrite)
     verdict = (
         "checksum verified, the original" if restored.is_exact else "not the original, but altered"

@@ -1,20 +1,21 @@
 """Arrays of plain numbers as compressed chunks, read back with every claim checked.
 
-A chunk holds a block of rows: the difference of each row from the one before (integers only), the
-bytes shuffled so that the first bytes of all numbers come first, then zlib. Differences and
-shuffling make faces, indices and smooth weights small; nothing but numbers can be stored.
+A chunk holds a block of rows, made small by one of the `FILTERS`: the differences of each row from
+the one before, once or twice; the bytes shuffled so that the first bytes of all numbers come first;
+then zlib or LZMA. Nothing but numbers can be stored.
 """
 
 from __future__ import annotations
 
 import hashlib
+import lzma
 import math
 import zlib
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Any, Literal, cast
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from wavelet_core.errors import PyramidError
 __all__ = [
     "ArrayHeader",
     "array_checksum",
+    "closest_header",
     "decode_array",
     "decode_blocks",
     "encode_array",
@@ -40,8 +42,22 @@ MAX_CHUNK_BYTES = 2 * CHUNK_BYTES
 #: zlib level: on pyramids of real DEMs 6 took 1.1 to 5 times the time for 0.4 to 10 % fewer bytes.
 COMPRESSION_LEVEL = 1
 
-#: zlib cannot expand by more than this (1032:1, from its format), so larger claims are false.
+#: zlib cannot expand by more than this (1032:1, from its format), and what LZMA makes smaller is
+#: written with zlib, so larger claims are false.
 MAX_EXPANSION = 1040
+
+#: LZMA without its contexts of positions and of the byte before: what is stored is residuals, whose
+#: order already is that of their size. The small dictionary and the quick search make it three
+#: times as fast as preset 6, for 1 to 2 % more bytes.
+LZMA_FILTERS = [
+    {
+        "id": lzma.FILTER_LZMA2, "dict_size": 1 << 20, "lc": 0, "lp": 0, "pb": 0,
+        "mode": lzma.MODE_NORMAL, "nice_len": 32, "mf": lzma.MF_HC4, "depth": 4,
+    }
+]  # fmt: skip
+
+#: Rows by which the filter of an array is chosen.
+_SAMPLE_ROWS = 1 << 16
 
 _DTYPES = {
     np.dtype(code).str: np.dtype(code)
@@ -51,7 +67,30 @@ _DTYPES = {
 #: Numbers in an array, at most.
 _MOST_NUMBERS = 1 << 40
 
-Filter = Literal["shuffle", "delta_shuffle"]
+
+class Filter(NamedTuple):
+    """What is done to a block before it is compressed, and by what it is.
+
+    n_differences : int, how often each row is replaced by its difference from the one before
+    is_zigzag : bool, whether negative numbers become odd ones, and floats are first taken for
+        integers of the same order
+    is_lzma : bool, else zlib
+    """
+
+    n_differences: int
+    is_zigzag: bool
+    is_lzma: bool
+
+
+#: By the name in the file. All of them shuffle the bytes.
+FILTERS = {
+    "shuffle": Filter(0, is_zigzag=False, is_lzma=False),
+    "delta_shuffle": Filter(1, is_zigzag=False, is_lzma=False),
+    "lzma": Filter(0, is_zigzag=False, is_lzma=True),
+    "zigzag_lzma": Filter(0, is_zigzag=True, is_lzma=True),
+    "delta_lzma": Filter(1, is_zigzag=True, is_lzma=True),
+    "delta2_lzma": Filter(2, is_zigzag=True, is_lzma=True),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,15 +103,15 @@ class ArrayHeader:
         Little-endian numpy code, such as ``<f8``.
     shape : tuple of int
         One or two dimensions.
-    filter : {"shuffle", "delta_shuffle"}
-        What was done before zlib.
+    filter : str
+        A name out of `FILTERS`.
     chunk_rows : int
         Rows in every chunk but the last.
     """
 
     dtype: str
     shape: tuple[int, ...]
-    filter: Filter
+    filter: str
     chunk_rows: int
 
     @property
@@ -116,7 +155,8 @@ class ArrayHeader:
             and dtype in _DTYPES
             and is_shape
             and math.prod(sizes) < _MOST_NUMBERS
-            and filter_name in ("shuffle", "delta_shuffle")
+            and isinstance(filter_name, str)
+            and filter_name in FILTERS
             and type(chunk_rows) is int
             and 1 <= chunk_rows <= _MOST_NUMBERS
         )
@@ -126,7 +166,7 @@ class ArrayHeader:
                 f"an array is declared as {claim}, which no pyramid file holds; "
                 "the file is damaged."
             )
-        header = cls(str(dtype), sizes, cast(Filter, filter_name), cast(int, chunk_rows))
+        header = cls(str(dtype), sizes, str(filter_name), int(str(chunk_rows)))
         if header.chunk_bytes > MAX_CHUNK_BYTES:
             raise PyramidError(
                 f"an array declares chunks of {header.chunk_bytes} bytes, more than any pyramid "
@@ -145,11 +185,29 @@ def header_of(array: NDArray[Any]) -> ArrayHeader:
         )
     row_bytes = max(dtype.itemsize * math.prod(array.shape[1:]), 1)
     rows = max(CHUNK_BYTES // row_bytes, 1)
-    filter_name: Filter = "delta_shuffle" if dtype.kind in "iu" else "shuffle"
+    filter_name = "delta_shuffle" if dtype.kind in "iu" else "shuffle"
     return ArrayHeader(dtype.str, tuple(array.shape), filter_name, rows)
 
 
-def encode_array(array: NDArray[Any], pool: ThreadPoolExecutor | None = None) -> Iterator[bytes]:
+def closest_header(array: NDArray[Any]) -> ArrayHeader:
+    """Return the header under which an array takes the fewest bytes, judged by part of it.
+
+    Parameters
+    ----------
+    array : integers, floats or booleans, one or two dimensions
+    """
+    header = header_of(array)
+    start = max((len(array) - _SAMPLE_ROWS) // 2, 0)
+    sample = array[start : start + _SAMPLE_ROWS]
+    if not sample.nbytes:
+        return header
+    sizes = {name: len(_pack(sample, replace(header, filter=name))) for name in FILTERS}
+    return replace(header, filter=min(sizes, key=lambda name: (sizes[name], name)))
+
+
+def encode_array(
+    array: NDArray[Any], pool: ThreadPoolExecutor | None = None, header: ArrayHeader | None = None
+) -> Iterator[bytes]:
     """Yield the compressed chunks of an array, in order.
 
     Parameters
@@ -158,8 +216,10 @@ def encode_array(array: NDArray[Any], pool: ThreadPoolExecutor | None = None) ->
         What to store. Booleans become bytes.
     pool : ThreadPoolExecutor, optional
         Compresses several chunks at once; the result is the same.
+    header : ArrayHeader, optional
+        Under which; by default that of `header_of`.
     """
-    header = header_of(array)
+    header = header_of(array) if header is None else header
     starts = range(0, header.shape[0], header.chunk_rows) if header.n_bytes else range(0)
     blocks = (array[start : start + header.chunk_rows] for start in starts)
     return _in_order(lambda block: _pack(block, header), blocks, pool)
@@ -252,45 +312,92 @@ def array_checksum(header: ArrayHeader, blocks: Iterable[NDArray[Any]]) -> str:
 
 
 def _pack(block: NDArray[Any], header: ArrayHeader) -> bytes:
-    dtype = np.dtype(header.dtype)
-    block = np.ascontiguousarray(block, dtype=dtype)
-    if header.filter == "delta_shuffle":
-        bits = block.view(f"<u{dtype.itemsize}")
-        block = bits.copy()
-        block[1:] -= bits[:-1]  # wraps round, and so does the sum that undoes it
-    shuffled = block.reshape(-1).view(np.uint8).reshape(-1, dtype.itemsize).T
-    return zlib.compress(np.ascontiguousarray(shuffled).data, COMPRESSION_LEVEL)
+    dtype, steps = np.dtype(header.dtype), FILTERS[header.filter]
+    bits = np.ascontiguousarray(block, dtype=dtype).view(f"<u{dtype.itemsize}")
+    if steps.is_zigzag:
+        bits = _in_order_of_value(bits, dtype)
+    for _ in range(steps.n_differences):
+        differences = bits.copy()
+        differences[1:] -= bits[:-1]  # wraps round, and so does the sum that undoes it
+        bits = differences
+    if steps.is_zigzag:
+        bits = _zigzag(bits)
+    shuffled = bits.reshape(-1).view(np.uint8).reshape(-1, dtype.itemsize).T
+    raw = np.ascontiguousarray(shuffled).data
+    if steps.is_lzma:
+        return lzma.compress(raw, format=lzma.FORMAT_RAW, filters=LZMA_FILTERS)
+    return zlib.compress(raw, COMPRESSION_LEVEL)
 
 
 def _unpack(job: tuple[int, bytes], header: ArrayHeader) -> NDArray[Any]:
     index, chunk = job
-    dtype = np.dtype(header.dtype)
+    dtype, steps = np.dtype(header.dtype), FILTERS[header.filter]
     n_rows = min(header.chunk_rows, header.shape[0] - index * header.chunk_rows)
     shape = (n_rows, *header.shape[1:])
     if n_rows <= 0:
         raise PyramidError("an array has more chunks than are due; the file is damaged.")
-    raw = _expand(chunk, math.prod(shape) * dtype.itemsize)
+    raw = _expand(chunk, math.prod(shape) * dtype.itemsize, is_lzma=steps.is_lzma)
     plain = np.ascontiguousarray(np.frombuffer(raw, np.uint8).reshape(dtype.itemsize, -1).T)
-    if header.filter == "delta_shuffle":
-        steps = plain.reshape(-1).view(f"<u{dtype.itemsize}").reshape(shape)
-        return np.cumsum(steps, axis=0, dtype=steps.dtype).view(dtype)
-    return plain.reshape(-1).view(dtype).reshape(shape)
+    bits = plain.reshape(-1).view(f"<u{dtype.itemsize}").reshape(shape)
+    if steps.is_zigzag:
+        bits = _unzigzag(bits)
+    for _ in range(steps.n_differences):
+        bits = np.cumsum(bits, axis=0, dtype=bits.dtype)
+    if steps.is_zigzag:
+        bits = _in_order_of_value(bits, dtype)
+    return bits.view(dtype)
 
 
-def _expand(chunk: bytes, n_bytes: int) -> bytes:
+def _in_order_of_value(bits: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+    """Return floats as integers of the same order, and those as floats again; integers as is."""
+    if dtype.kind != "f":
+        return bits
+    signed = bits.view(f"<i{dtype.itemsize}")
+    low = np.iinfo(signed.dtype).max
+    return (signed ^ ((signed >> (8 * dtype.itemsize - 1)) & low)).view(bits.dtype)
+
+
+def _zigzag(bits: NDArray[Any]) -> NDArray[Any]:
+    """Return 0, -1, 1, -2, ... as 0, 1, 2, 3, ..."""
+    signed = bits.view(f"<i{bits.dtype.itemsize}")
+    return ((signed << 1) ^ (signed >> (8 * bits.dtype.itemsize - 1))).view(bits.dtype)
+
+
+def _unzigzag(bits: NDArray[Any]) -> NDArray[Any]:
+    one = bits.dtype.type(1)
+    return (bits >> one) ^ (~(bits & one) + one)
+
+
+def _expand(chunk: bytes, n_bytes: int, *, is_lzma: bool) -> bytes:
     """Expand a chunk to exactly the bytes that are due, never to more."""
-    expander = zlib.decompressobj()
     try:
-        raw = expander.decompress(chunk, n_bytes)
-        # The end marker may still be due; one more byte than due would be a bomb's first.
-        surplus = b"" if expander.eof else expander.decompress(expander.unconsumed_tail, 1)
-    except zlib.error as error:
+        raw, is_all = _expand_lzma(chunk, n_bytes) if is_lzma else _expand_zlib(chunk, n_bytes)
+    except (zlib.error, lzma.LZMAError) as error:
         raise PyramidError(f"a chunk cannot be expanded ({error}); the file is damaged.") from error
-    if len(raw) != n_bytes or surplus or not expander.eof or expander.unused_data:
+    if len(raw) != n_bytes or not is_all:
         raise PyramidError(
             f"a chunk does not expand to the {n_bytes} bytes that are due; the file is damaged."
         )
     return raw
+
+
+def _expand_zlib(chunk: bytes, n_bytes: int) -> tuple[bytes, bool]:
+    expander = zlib.decompressobj()
+    raw = expander.decompress(chunk, n_bytes)
+    # The end marker may still be due; one more byte than due would be a bomb's first.
+    surplus = b"" if expander.eof else expander.decompress(expander.unconsumed_tail, 1)
+    return raw, not surplus and expander.eof and not expander.unused_data
+
+
+def _expand_lzma(chunk: bytes, n_bytes: int) -> tuple[bytes, bool]:
+    expander = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=LZMA_FILTERS)
+    raw = b""
+    while len(raw) <= n_bytes and not expander.eof:
+        more = expander.decompress(b"" if raw else chunk, n_bytes - len(raw) + 1)
+        raw += more
+        if not more and expander.needs_input:
+            break
+    return raw, expander.eof and not expander.unused_data
 
 
 def _in_order(

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
@@ -20,8 +20,11 @@ from numpy.typing import NDArray
 from wavelet_core.errors import PyramidError
 from wavelet_gis._fields import parse_json
 from wavelet_gis.io.pyramid.array_codec import (
+    FILTERS,
+    MAX_EXPANSION,
     ArrayHeader,
     array_checksum,
+    closest_header,
     decode_array,
     decode_blocks,
     encode_array,
@@ -66,7 +69,7 @@ class Entry(NamedTuple):
 def write_arrays(
     connection: sqlite3.Connection, arrays: Mapping[str, NDArray[Any]], pool: ThreadPoolExecutor
 ) -> Iterator[int]:
-    """Write arrays, yielding the bytes of each that is done.
+    """Write arrays, each as small as it can be, yielding the bytes of each that is done.
 
     Parameters
     ----------
@@ -78,7 +81,7 @@ def write_arrays(
         Compresses.
     """
     for name, array in arrays.items():
-        header = header_of(array)
+        header, chunks = _smallest(array, pool)
         cursor = connection.execute(
             "INSERT INTO wavelet_arrays (name, dtype, shape, filter, chunk_rows, checksum) "
             "VALUES (?,?,?,?,?,?)",
@@ -93,12 +96,22 @@ def write_arrays(
         )
         connection.executemany(
             "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES (?,?,?)",
-            (
-                (cursor.lastrowid, sequence, chunk)
-                for sequence, chunk in enumerate(encode_array(array, pool))
-            ),
+            ((cursor.lastrowid, sequence, chunk) for sequence, chunk in enumerate(chunks)),
         )
         yield array.nbytes
+
+
+def _smallest(array: NDArray[Any], pool: ThreadPoolExecutor) -> tuple[ArrayHeader, Iterable[bytes]]:
+    """Return the header of an array and its chunks, never smaller than a reader believes."""
+    header = closest_header(array)
+    chunks = encode_array(array, pool, header)
+    if not FILTERS[header.filter].is_lzma:
+        return header, chunks
+    kept = list(chunks)
+    if header.n_bytes <= MAX_EXPANSION * sum(map(len, kept)):
+        return header, kept
+    plain = header_of(array)
+    return plain, encode_array(array, pool, plain)
 
 
 def read_entries(connection: sqlite3.Connection, *, with_checksums: bool) -> dict[str, Entry]:

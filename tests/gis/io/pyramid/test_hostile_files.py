@@ -20,10 +20,9 @@ from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.pyramid.array_codec import encode_array, header_of
 from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary
 
-
-@pytest.fixture(params=["raster", "cloud"])
-def sound(request):
-    return request.getfixturevalue(f"{request.param}_pyramid")
+listed = pytest.mark.parametrize(
+    "sound", ["raster of format 1", "cloud of format 1"], indirect=True
+)
 
 
 @pytest.fixture(params=["before checksums", "resealed"])
@@ -97,7 +96,7 @@ def test_a_view_that_poses_as_a_table(damaged):
         "DELETE FROM wavelet_metadata WHERE name = 'format'",
         "UPDATE wavelet_metadata SET value = '{\"name\": \"another\"}' WHERE name = 'format'",
         "UPDATE wavelet_metadata SET value = '[]' WHERE name = 'format'",
-        "UPDATE wavelet_metadata SET value = json_set(value, '$.version', 2) WHERE name = 'format'",
+        "UPDATE wavelet_metadata SET value = json_set(value, '$.version', 3) WHERE name = 'format'",
         "ALTER TABLE wavelet_arrays RENAME COLUMN shape TO form",
         "ALTER TABLE wavelet_levels RENAME COLUMN n_faces TO faces",
     ],
@@ -161,6 +160,7 @@ def test_claims_about_the_pyramid(damaged, change):
         read_pyramid(damaged(*with_pyramid_field(**change)))
 
 
+@listed
 @pytest.mark.parametrize(
     ("name", "array"),
     [
@@ -189,6 +189,7 @@ def test_arrays_of_another_shape_type_or_range(damaged, name, array):
         read_pyramid(damaged(*replace_array(name, array)))
 
 
+@listed
 @pytest.mark.parametrize("part", ["odd", "target", "indices"])
 @pytest.mark.parametrize("value", [-1, 2**31 - 1])
 def test_one_index_out_of_range(damaged, sound, part, value):
@@ -199,6 +200,7 @@ def test_one_index_out_of_range(damaged, sound, part, value):
         read_pyramid(damaged(*replace_array(f"steps/0001/{part}", array)))
 
 
+@listed
 def test_an_odd_vertex_twice_and_a_target_that_is_odd(damaged, sound):
     step = read_pyramid(sound).pyramid.steps[1]
     twice = step.odd.copy()
@@ -211,6 +213,7 @@ def test_an_odd_vertex_twice_and_a_target_that_is_odd(damaged, sound):
         read_pyramid(damaged(*replace_array("steps/0001/target", target)))
 
 
+@listed
 @pytest.mark.parametrize(
     "statement",
     [
@@ -246,6 +249,7 @@ def test_damaged_tables(damaged, statement):
         read_pyramid(damaged(statement))
 
 
+@listed
 @pytest.mark.parametrize(
     ("n_bytes", "message"),
     [(1 << 28, "a chunk of"), (1 << 22, "a chunk does not expand")],
@@ -267,6 +271,7 @@ def test_a_bomb_costs_no_memory(damaged, n_bytes, message):
     assert grown_kib < 100_000
 
 
+@listed
 def test_a_value_beyond_all_bounds(damaged):
     path = damaged(
         "UPDATE wavelet_chunks SET data = zeroblob(100000000) WHERE array_id = "
@@ -302,6 +307,7 @@ def test_figures_that_are_none(damaged):
     assert np.isnan([level["rmse_surface"], level["n_vertices"], level["n_faces"]]).all()
 
 
+@listed
 def test_changed_details_are_not_passed_off_as_the_original(damaged, sound):
     details = read_pyramid(sound).pyramid.steps[3].details.copy()
     details[0, 0] += 3.0
@@ -366,6 +372,7 @@ def test_arrays_that_share_their_chunks(damaged):
         read_pyramid(path)
 
 
+@listed
 def test_arrays_that_claim_more_than_the_file_can_hold(damaged):
     statements = replace_array("coarse", np.zeros((300_000, 9)))
     claim = "UPDATE wavelet_arrays SET shape = '[8000000, 9]' WHERE name = 'coarse'"
@@ -427,6 +434,7 @@ def test_any_number_anywhere_in_the_metadata(damaged, sound, name, number):
             assert_read_or_refused_in_a_line(read, path)
 
 
+@listed
 @pytest.mark.parametrize(
     "shape", ["[[1]]", "[1e9]", "[2147483648, 3]", "[-1]", "[1" + "0" * 400 + "]", "[" * 9000, "7"]
 )
@@ -436,9 +444,103 @@ def test_any_shape(damaged, shape):
         read_pyramid(path)
 
 
+@listed
 @pytest.mark.parametrize("name", ["indices", "weights", "odd", "indptr", "details"])
 def test_arrays_of_another_dimension(damaged, sound, name):
     array = getattr(read_pyramid(sound).pyramid.steps[1], name)
     other = array.reshape(-1) if array.ndim == 2 else array[:, None]
     with pytest.raises(PyramidError, match=r"dimensions are due|no more than one"):
         read_pyramid(damaged(*replace_array(f"steps/0001/{name}", other)))
+
+
+# --- records ----------------------------------------------------------------------------------
+
+recorded = pytest.mark.parametrize("sound", ["raster", "cloud"], indirect=True)
+
+
+@recorded
+@pytest.mark.parametrize(
+    ("name", "array"),
+    [
+        ("parts/0/going", np.zeros(3, np.uint8)),
+        ("parts/0/going", np.zeros(3)),
+        ("parts/0/targets", np.zeros(10**5, np.uint8)),
+        ("parts/0/targets", np.zeros((4, 4), np.uint8)),
+        ("parts/0/beyond", np.zeros(7, np.uint8)),
+    ],
+)
+def test_answers_of_another_number_or_type(damaged, name, array):
+    with pytest.raises(PyramidError):
+        read_pyramid(damaged(*replace_array(name, array)))
+
+
+@recorded
+@pytest.mark.parametrize("name", ["going", "targets"])
+@pytest.mark.parametrize("fill", [0x00, 0xFF, 0x55])
+def test_answers_that_tell_no_pyramid(damaged, sound, name, fill):
+    """Whatever is answered, it ends; and what comes out is the input all the same, or nothing."""
+    with sqlite3.connect(sound) as connection:
+        (shape,) = connection.execute(
+            "SELECT shape FROM wavelet_arrays WHERE name = ?", (f"parts/0/{name}",)
+        ).fetchone()
+    array = np.full(json.loads(shape), fill, dtype=np.uint8)
+    path = damaged(*replace_array(f"parts/0/{name}", array))
+    with contextlib.suppress(PyramidError):
+        read_pyramid(path).restore()
+
+
+@recorded
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"levels": []},
+        {"levels": [1]},
+        {"levels": [70000, 5]},
+        {"levels": [0, 0] * 2000},
+        {"going": [1] * 31},
+        {"going": [2**40] * 32},
+        {"targets": [-1] * 8},
+    ],
+)
+def test_records_that_are_none(damaged, sound, change):
+    with sqlite3.connect(sound) as connection:
+        (text,) = connection.execute(
+            "SELECT value FROM wavelet_metadata WHERE name = 'record'"
+        ).fetchone()
+    record = json.loads(text)
+    record["parts"][0] |= change
+    statement = "UPDATE wavelet_metadata SET value = ? WHERE name = 'record'"
+    with pytest.raises(PyramidError):
+        read_pyramid(damaged((statement, json.dumps(record))))
+
+
+@pytest.mark.parametrize("sound", ["cloud"], indirect=True)
+@pytest.mark.parametrize(
+    "faces",
+    [
+        np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4]], np.int32),  # three faces on one edge
+        np.array([[0, 1, 1]], np.int32),
+        np.array([[0, 1, 10**6]], np.int32),
+        np.array([[0, 1, -1]], np.int32),
+        np.zeros((3, 2), np.int32),
+        np.zeros(3, np.int32),
+    ],
+)
+def test_faces_that_are_no_surface(damaged, faces):
+    with pytest.raises(WaveletError):
+        read_pyramid(damaged(*replace_array("faces", faces)))
+
+
+@pytest.mark.parametrize("sound", ["raster"], indirect=True)
+@pytest.mark.parametrize(
+    "array",
+    [
+        np.zeros(7, np.uint16),
+        np.zeros(1952, np.int16),
+        np.full(1952, np.iinfo(np.uint64).max, np.uint64),
+        np.zeros((976, 2), np.uint8),
+    ],
+)
+def test_residuals_of_another_raster(damaged, array):
+    with pytest.raises(PyramidError):
+        read_pyramid(damaged(*replace_array("source/residuals", array))).restore()

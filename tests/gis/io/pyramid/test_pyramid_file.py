@@ -104,7 +104,7 @@ def test_an_altered_pyramid_is_stored_as_such(raster_record, tmp_path):
 
 def test_the_summary_needs_no_arrays(raster_pyramid, raster_record):
     summary = read_summary(raster_pyramid)
-    assert summary["format"]["version"] == 1
+    assert summary["format"]["version"] == 2
     assert summary["pyramid"]["n_vertices"] == raster_record.origin.n_vertices
     assert summary["source"]["shape"] == [40, 50]
     assert [level["level"] for level in summary["levels"]] == [4, 3, 2, 1, 0]

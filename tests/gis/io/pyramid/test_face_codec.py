@@ -1,0 +1,81 @@
+"""Faces come back from what their points do not tell of them."""
+
+import numpy as np
+import pytest
+
+from wavelet_core.errors import PyramidError
+from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
+from wavelet_gis.io.pyramid.face_codec import decode_faces, encode_faces
+
+
+def scattered(n=500, seed=0, side=10_000):
+    rng = np.random.default_rng(seed)
+    return rng.permutation(np.unique(rng.integers(0, side, (n, 2)), axis=0))
+
+
+def faces_of(points):
+    return canonical_faces(delaunay_faces(points.astype(float)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("side", [40, 10_000, 2**24])
+def test_a_triangulation_comes_back(seed, side):
+    points = scattered(seed=seed, side=side)
+    faces = faces_of(points)
+    record = encode_faces(points, faces)
+    assert np.array_equal(decode_faces(points, record), faces)
+
+
+def test_points_on_a_grid_where_circles_tie():
+    points = np.stack(np.meshgrid(np.arange(30), np.arange(20)), axis=-1).reshape(-1, 2)
+    faces = faces_of(points)
+    assert np.array_equal(decode_faces(points, encode_faces(points, faces)), faces)
+
+
+def test_holes_and_missing_faces_come_back():
+    points = scattered()
+    faces = faces_of(points)
+    gone = np.random.default_rng(5).random(len(faces)) < 0.1
+    faces = faces[~gone]
+    record = encode_faces(points, faces)
+    assert len(record.holes) > 10
+    assert np.array_equal(decode_faces(points, record), faces)
+
+
+def test_a_triangulation_that_is_not_delaunay_comes_back():
+    points = scattered()
+    squeezed = points * np.array([1, 7])
+    faces = canonical_faces(delaunay_faces(squeezed.astype(float)))
+    record = encode_faces(points, faces)
+    assert np.array_equal(decode_faces(points, record), faces)
+
+
+def test_nearly_all_is_told_by_the_points():
+    points = scattered(4000, side=100_000)
+    record = encode_faces(points, faces_of(points))
+    clear = [0, 2, 6]
+    wrong = sum(min(a.sum(), len(a) - a.sum()) for k, a in enumerate(record.answers) if k in clear)
+    assert wrong < 0.02 * len(points)
+    assert len(record.far) < 0.15 * len(points)
+
+
+def test_what_cannot_be_told_exactly_is_not():
+    assert encode_faces(np.array([[0, 0], [1, 0], [0, 1]]), np.array([[0, 1, 2]])) is None
+    far = scattered() * 2**20
+    assert encode_faces(far, faces_of(scattered())) is None
+    points = scattered()
+    assert encode_faces(points, faces_of(points)[::-1]) is None  # of another order
+
+
+def test_records_of_other_points_are_refused():
+    points = scattered()
+    record = encode_faces(points, faces_of(points))
+    for broken in (
+        record._replace(answers=tuple(a[:-1] for a in record.answers)),
+        record._replace(answers=tuple(np.append(a, 0).astype(np.uint8) for a in record.answers)),
+        record._replace(far=np.array([[0, 10**6]], np.int32)),
+        record._replace(far=np.array([[5, 5]], np.int32)),
+        record._replace(holes=np.array([10**9])),
+    ):
+        with pytest.raises(PyramidError):
+            decode_faces(points, broken)

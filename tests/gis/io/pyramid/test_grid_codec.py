@@ -1,0 +1,84 @@
+"""A raster's numbers come back from their residuals, whatever they are and wherever holes lie."""
+
+import numpy as np
+import pytest
+from gis.samples import hills
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from wavelet_core.errors import PyramidError
+from wavelet_gis.io.pyramid.grid_codec import (
+    decode_grid,
+    encode_grid,
+    integers_of,
+    values_of,
+)
+
+DTYPES = ("u1", "i1", "<u2", "<i2", "<u4", "<i4", "<i8", "<u8", "<f4", "<f8", "<f2")
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@given(data=st.data())
+def test_every_bit_of_every_type_comes_back(dtype, data):
+    shape = data.draw(st.tuples(st.integers(1, 9), st.integers(1, 9)))
+    raw = data.draw(hnp.arrays(np.uint8, (*shape, np.dtype(dtype).itemsize)))
+    values = np.ascontiguousarray(raw).view(dtype)[..., 0]
+    valid = data.draw(hnp.arrays(bool, shape))
+    numbers = integers_of(values[valid])
+    residuals = encode_grid(numbers.integers, valid)
+    back = values_of(decode_grid(residuals, valid), np.dtype(dtype), numbers.divisor)
+    assert back.tobytes() == values[valid].tobytes()
+
+
+@pytest.mark.parametrize(
+    ("values", "divisor"),
+    [
+        (np.array([1.0, 2.5, -3.0], "f4"), 2),
+        (np.array([101.23, 99.99], "f4"), 100),
+        (np.array([101.23, 99.99]), 100),
+        (np.array([0.1, -0.0]), 0),  # a sign that no integer has
+        (np.array([np.pi, 1e300]), 0),
+        (np.array([2543.0217, 3946.1387], "f4"), 0),  # no fewer digits than floats have
+    ],
+)
+def test_floats_that_are_decimals_are_found(values, divisor):
+    numbers = integers_of(values)
+    assert numbers.divisor == divisor
+    assert values_of(numbers.integers, values.dtype, divisor).tobytes() == values.tobytes()
+
+
+def test_smooth_terrain_has_small_residuals():
+    values = np.rint(hills(64, 64) * 10).astype(np.int64)
+    valid = np.ones(values.shape, dtype=bool)
+    residuals = encode_grid(values.ravel(), valid)
+    assert residuals.numbers.dtype == np.uint8
+    along_rows = np.abs(np.diff(values, axis=1)).mean()
+    assert residuals.numbers.astype(float).mean() / 2 < along_rows
+
+
+def test_either_order_is_read():
+    rough = np.random.default_rng(0).integers(-3, 4, (40, 40))
+    smooth = np.rint(hills(40, 40) * 20).astype(np.int64)
+    valid = np.ones((40, 40), dtype=bool)
+    for values in (rough, smooth, rough + smooth):
+        residuals = encode_grid(values.ravel(), valid)
+        assert np.array_equal(decode_grid(residuals, valid), values.ravel())
+
+
+def test_residuals_of_another_mask_are_refused():
+    values = np.arange(36).reshape(6, 6)
+    valid = np.ones((6, 6), dtype=bool)
+    residuals = encode_grid(values.ravel(), valid)
+    fewer = valid.copy()
+    fewer[2, 2] = False
+    for broken in (
+        residuals._replace(numbers=residuals.numbers[1:]),
+        residuals._replace(beyond=np.ones(3, np.uint64)),
+        residuals._replace(classes=(36,)),
+        residuals._replace(classes=(0,) * 29),
+    ):
+        with pytest.raises(PyramidError, match="do not fit"):
+            decode_grid(broken, valid)
+    with pytest.raises(PyramidError, match="do not fit"):
+        decode_grid(residuals, fewer)

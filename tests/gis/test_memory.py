@@ -1,0 +1,40 @@
+"""Work that will not fit is refused before it begins, with the figures."""
+
+import numpy as np
+import pytest
+
+from wavelet_gis import _memory
+from wavelet_gis.errors import InputFileError
+
+
+def test_what_does_not_fit_is_refused_with_the_figures():
+    with pytest.raises(
+        InputFileError, match=r"100,000,000 .* 40\.0 GB .* 8\.0 GB are free; .*tiles"
+    ):
+        _memory.require_memory(100_000_000, 1, available=8_000_000_000)
+
+
+def test_what_fits_and_what_is_small_is_not():
+    _memory.require_memory(10_000_000, 1, available=8_000_000_000)
+    _memory.require_memory(500_000, 30, available=1000)
+
+
+def test_channels_take_memory():
+    assert _memory.analysis_bytes(10, 4) > _memory.analysis_bytes(10, 1)
+
+
+def test_this_system_tells_what_there_is():
+    free = _memory.available_bytes()
+    assert free is None or 10**6 < free < 10**14
+
+
+def test_an_analysis_asks_first(monkeypatch, tif):
+    import wavelet_gis as wg
+
+    monkeypatch.setattr(_memory, "SMALL_INPUT", 10)
+    monkeypatch.setattr(_memory, "available_bytes", lambda: 1000)
+    terrain = wg.open(tif)
+    for work in (lambda: wg.analyse(terrain), lambda: wg.simplify(terrain, vertices=100)):
+        with pytest.raises(InputFileError, match="takes some"):
+            work()
+    assert np.isfinite(terrain.mesh.vertices).all()

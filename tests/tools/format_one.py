@@ -1,0 +1,73 @@
+"""Pyramid files of format 1, as terrain-wavelets wrote them before there was a second."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+from tools.pyramid_surgery import reseal
+
+from wavelet_gis.io.geopackage import (
+    create_geopackage,
+    open_for_writing,
+    register_attributes_table,
+)
+from wavelet_gis.io.pyramid import pyramid_file
+from wavelet_gis.io.pyramid.array_codec import encode_array, header_of
+from wavelet_gis.model.exact_restore import exact_column
+
+
+def write_format_one(path, geo):
+    """Write a pyramid with lists of its steps, and with what rounding loses."""
+    geo = replace(geo, origin=_with_ledger(geo))
+    source, arrays = geo.origin.to_parts()
+    arrays |= pyramid_file._listed(geo.pyramid)
+    if geo.pyramid.locked is not None:
+        arrays["locked"] = geo.pyramid.locked
+    metadata, _ = pyramid_file._to_parts(geo)
+    metadata["source"] = source
+    metadata["format"]["version"] = 1
+    metadata.pop("record", None)
+    create_geopackage(path)
+    with open_for_writing(path) as connection:
+        connection.executescript(pyramid_file._SCHEMA)
+        for table, description in pyramid_file._TABLES.items():
+            register_attributes_table(connection, table, description)
+        pyramid_file._write_levels(connection, geo)
+        for name, array in arrays.items():
+            _write_array(connection, name, array)
+        connection.executemany(
+            "INSERT INTO wavelet_metadata (name, value) VALUES (?, ?)",
+            [(name, json.dumps(value)) for name, value in metadata.items()],
+        )
+        connection.execute("INSERT INTO wavelet_metadata (name, value) VALUES ('checksums', '{}')")
+    reseal(path)
+
+
+def _write_array(connection, name, array):
+    header = header_of(array)
+    cursor = connection.execute(
+        "INSERT INTO wavelet_arrays (name, dtype, shape, filter, chunk_rows, checksum) "
+        "VALUES (?,?,?,?,?,'')",
+        (name, header.dtype, json.dumps(header.shape), header.filter, header.chunk_rows),
+    )
+    connection.executemany(
+        "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES (?,?,?)",
+        [(cursor.lastrowid, k, chunk) for k, chunk in enumerate(encode_array(array))],
+    )
+
+
+def _with_ledger(geo):
+    """Return the origin with remainders and exceptions where the input's numbers are kept."""
+    origin, mesh = geo.origin, geo.pyramid.synthesise()
+    kept = origin.corrections
+    if kept is None:
+        return origin
+    if origin.grid is not None:
+        corrections = exact_column(kept.values, origin._values(mesh, geo.frame))
+    else:
+        approximate = origin._approximate(mesh, geo.frame)
+        corrections = tuple(
+            exact_column(column.values, np.asarray(seen))
+            for column, seen in zip(kept, approximate, strict=True)
+        )
+    return replace(origin, corrections=corrections)

@@ -1,0 +1,95 @@
+"""Kernels of :mod:`wavelet_core.partition.recorded`: which collapse looks the best from nearby.
+
+A forecast knows the present heights of a vertex and of its ring, and no more: not the points of the
+faces, nor the integrals. So whoever has the level has its forecasts, before it is known what goes.
+"""
+
+import numpy as np
+
+from ._jit import inlined, kernel
+from .half_edges import MAX_RING, walk_ring
+from .outline import STAYS, outline_rule
+from .surface_cost import NONE, is_enclosed, legal_targets, place_ring
+
+
+# The legal targets of v, the best first: order and own_error are filled; returns their number.
+@inlined
+def targets_in_order(
+    v, origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring, spoke, ring_x,
+    ring_y, ring_z, is_barred, order, own_error, distance, cover, cover_weights,
+):  # fmt: skip
+    if stays[v]:
+        return 0
+    size, n_sides = walk_ring(v, origin, twin, outgoing, ring, spoke)
+    if size < 3 or is_enclosed(size, ring, locked):
+        return 0
+    diameter = place_ring(v, size, ring, x, y, z, ring_x, ring_y, ring_z)
+    rule, along = NONE, 0.0
+    if n_sides < size:
+        rule, along = outline_rule(v, size, ring, ring_x, ring_y, outline)
+        if rule == STAYS:
+            return 0
+    return legal_targets(
+        v, size, rule, along, NONE, is_barred, ring, ring_x, ring_y, ring_z, diameter, z, np.inf,
+        height_step, order, own_error, distance, cover, cover_weights,
+    )  # fmt: skip
+
+
+# best, second (n,) float64 of all vertices, filled for those of todo (k,) int32: the squared detail
+# that the best legal collapse of each leaves, and the next best; inf where there is none
+@kernel
+def forecast_collapses(
+    start, stop, todo, mesh, surface, stays, locked, outline, height_step, best, second
+):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    x, y, z = surface.x, surface.y, surface.z
+    ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
+    ring_x, ring_y, ring_z = (
+        np.empty(MAX_RING),
+        np.empty(MAX_RING),
+        np.empty((MAX_RING, z.shape[1])),
+    )
+    order, cover = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
+    own_error, distance = np.empty(MAX_RING), np.empty(MAX_RING)
+    cover_weights = np.empty((2, MAX_RING))
+    is_barred = np.zeros(MAX_RING, np.bool_)
+    for q in range(start, stop):
+        v = todo[q]
+        n_legal = targets_in_order(
+            v, origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring, spoke,
+            ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover, cover_weights,
+        )  # fmt: skip
+        best[v] = own_error[order[0]] if n_legal > 0 else np.inf
+        second[v] = own_error[order[1]] if n_legal > 1 else np.inf
+
+
+# rank (k,) int32: places among the legal targets; target (k,) int32: those targets. Where rank is
+# negative it is filled from target, else target from rank; -1 is left where there is no such.
+@kernel
+def match_targets(
+    start, stop, odd, mesh, surface, stays, locked, outline, height_step, rank, target
+):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    x, y, z = surface.x, surface.y, surface.z
+    ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
+    ring_x, ring_y, ring_z = (
+        np.empty(MAX_RING),
+        np.empty(MAX_RING),
+        np.empty((MAX_RING, z.shape[1])),
+    )
+    order, cover = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
+    own_error, distance = np.empty(MAX_RING), np.empty(MAX_RING)
+    cover_weights = np.empty((2, MAX_RING))
+    is_barred = np.zeros(MAX_RING, np.bool_)
+    for q in range(start, stop):
+        n_legal = targets_in_order(
+            odd[q], origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring,
+            spoke, ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover,
+            cover_weights,
+        )  # fmt: skip
+        if rank[q] >= 0:
+            target[q] = ring[order[rank[q]]] if rank[q] < n_legal else -1
+        else:
+            for k in range(n_legal):
+                if ring[order[k]] == target[q]:
+                    rank[q] = k

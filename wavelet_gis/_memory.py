@@ -1,0 +1,114 @@
+"""Memory that a piece of work will take, held against what there is before the work begins."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from pathlib import Path
+
+from wavelet_gis.errors import InputFileError
+
+#: Bytes that an analysis takes at most beside its input, a vertex, and a vertex and channel beyond
+#: z; measured on rasters of 1 to 9 million cells and clouds with up to four attributes.
+BYTES_A_VERTEX = 400
+BYTES_A_CHANNEL = 120
+
+#: Inputs of fewer vertices are never refused: a wrong figure must not stop small work.
+SMALL_INPUT = 1_000_000
+
+
+def analysis_bytes(n_vertices: int, n_channels: int) -> int:
+    """Return what an analysis takes beside its input.
+
+    Examples
+    --------
+    >>> analysis_bytes(9_070_000, 1) // 10**6
+    3628
+    """
+    return n_vertices * (BYTES_A_VERTEX + BYTES_A_CHANNEL * (n_channels - 1))
+
+
+def require_memory(n_vertices: int, n_channels: int, available: int | None = None) -> None:
+    """Refuse an analysis that will not fit, with the figures.
+
+    Parameters
+    ----------
+    n_vertices, n_channels : int
+        Of the input; z is a channel.
+    available : int, optional
+        Bytes that there are; by default what the system says, and without that nothing is refused.
+
+    Raises
+    ------
+    InputFileError
+        What there is is less than what it takes.
+    """
+    free = available_bytes() if available is None else available
+    needed = analysis_bytes(n_vertices, n_channels)
+    if free is None or n_vertices < SMALL_INPUT or needed <= free:
+        return
+    raise InputFileError(
+        "an analysis of {n_vertices:,} vertices takes some {needed:.1f} GB of memory, and "
+        "{free:.1f} GB are free; close other programs, cut the input into tiles, or thin it first.",
+        n_vertices=n_vertices,
+        needed=needed / 1e9,
+        free=free / 1e9,
+    )
+
+
+def available_bytes() -> int | None:
+    """Return the memory that may still be taken; None where the system does not tell."""
+    limits = [_of_system(), _of_group()]
+    known = [limit for limit in limits if limit is not None]
+    return min(known) if known else None
+
+
+def _of_system() -> int | None:
+    if sys.platform == "win32":
+        return _of_windows()
+    try:
+        text = Path("/proc/meminfo").read_text(encoding="ascii")
+    except OSError:
+        return _of_pages()
+    for line in text.splitlines():
+        name, _, value = line.partition(":")
+        if name == "MemAvailable":
+            return int(value.split()[0]) * 1024
+    return None
+
+
+def _of_pages() -> int | None:
+    """Return half of all memory, where that is all the system tells."""
+    try:
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
+    except (ValueError, OSError, AttributeError):
+        return None
+
+
+def _of_group() -> int | None:
+    """Return what the control group of the process has left, as in a container."""
+    folder = Path("/sys/fs/cgroup")
+    try:
+        limit = (folder / "memory.max").read_text(encoding="ascii").strip()
+        used = (folder / "memory.current").read_text(encoding="ascii").strip()
+    except OSError:
+        return None
+    return max(int(limit) - int(used), 0) if limit.isdigit() and used.isdigit() else None
+
+
+def _of_windows() -> int | None:
+    class Status(ctypes.Structure):
+        _fields_ = (
+            ("length", ctypes.c_ulong),
+            ("load", ctypes.c_ulong),
+            *((name, ctypes.c_ulonglong) for name in ("total", "free", "page_total", "page_free",
+                                                      "own_total", "own_free", "extended")),
+        )  # fmt: skip
+
+    status = Status()
+    status.length = ctypes.sizeof(status)
+    windows = getattr(ctypes, "windll", None)
+    if windows is None or not windows.kernel32.GlobalMemoryStatusEx(ctypes.byref(status)):
+        return None
+    return int(status.free)
