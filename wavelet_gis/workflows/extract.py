@@ -17,6 +17,7 @@ from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
 from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.notes import note
+from wavelet_gis.workflows.exchange import InOtherLibraries
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, warn_of_error_above
 from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
 
@@ -36,7 +37,7 @@ class SurfaceErrors(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Surface:
+class Surface(InOtherLibraries):
     """A TIN of a pyramid.
 
     Attributes
