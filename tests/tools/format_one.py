@@ -59,7 +59,7 @@ def _write_array(connection, name, array):
 def _with_ledger(geo):
     """Return the origin with remainders and exceptions where the input's numbers are kept."""
     origin, mesh = geo.origin, geo.pyramid.synthesise()
-    kept = origin.corrections
+    kept = getattr(origin, "corrections", None)
     if kept is None:
         return origin
     if origin.grid is not None:

@@ -31,6 +31,7 @@ if __name__ in ("__main__", "__mp_main__"):
     sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "tools")]
 
 from tools._limits import Trials  # noqa: E402
+from tools.format_one import write_format_one  # noqa: E402
 from tools.pyramid_surgery import STRIP, opened, operate, reseal  # noqa: E402
 
 from wavelet_core.errors import WaveletError  # noqa: E402
@@ -38,6 +39,7 @@ from wavelet_gis.io.pyramid.array_codec import encode_array, header_of  # noqa: 
 from wavelet_gis.io.pyramid.pyramid_file import (  # noqa: E402
     _require_tables,
     _to_parts,
+    read_input,
     read_pyramid,
     read_summary,
     write_pyramid,
@@ -290,6 +292,7 @@ def read(path):
         geo = read_pyramid(path)
         found = summary_of(geo)
         geo.restore()
+        read_input(path).restore()
         return found
 
 
@@ -318,6 +321,9 @@ def samples(folder):
         path = folder / f"{name}.gpkg"
         write_pyramid(path, geo)
         yield path, summary_of(geo)
+        listed = path.with_name(f"{path.stem}_1.gpkg")
+        write_format_one(listed, geo)
+        yield listed, summary_of(read_pyramid(listed))
 
 
 def main():
