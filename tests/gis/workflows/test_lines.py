@@ -162,14 +162,32 @@ def test_a_line_stays_at_every_level_of_a_pyramid_of_points(tmp_path, dike):
     np.testing.assert_allclose(back.vertices, terrain.mesh.vertices, atol=1e-8)
 
 
+def test_points_beneath_a_line_do_not_split_it(tmp_path):
+    x, y = np.meshgrid(X + 10.0 * np.arange(30), Y - 10.0 * np.arange(30))
+    points = np.column_stack([x.ravel(), y.ravel(), 300 + 9 * np.sin(x.ravel() / 40)])
+    table = tmp_path / "points.csv"  # in no order, so that it is not taken for a grid
+    np.random.default_rng(1).shuffle(points[1:])
+    np.savetxt(table, np.delete(points, 5, axis=0), delimiter=",", header="x,y,z", comments="")
+    shape = line((20, 100), (270, 100))
+    path = write_shapes(tmp_path / "row.gpkg", [shape], "LineString")
+    terrain = wg.open(table, crs=UTM, breaklines=path, line_tolerance=4.0)
+    assert len(terrain.merged) > 10
+    analysis = wg.analyse(terrain)
+    for level in range(analysis.n_levels + 1):
+        assert_line_is_edges(analysis.mesh(level), shape)
+    assert analysis.along_lines.max_error <= 4.0
+
+
 def test_fixed_points_stay_at_every_level_where_they_are(tmp_path):
     cloud = write_las(tmp_path / "cloud.laz", 3000)
     given = np.array([[10.5, 20.25, 312.5], [70.125, 55.5, 280.0], [33.0, 81.0, 299.0]])
-    path = write_shapes(tmp_path / "fixed.gpkg", shapely.points(given + [X, Y, 0]), "Point Z")
+    path = write_shapes(
+        tmp_path / "fixed.gpkg", shapely.points(given + np.array([X, Y, 0])), "Point Z"
+    )
     terrain = wg.open(cloud, fixed_points=path)
     analysis = wg.analyse(terrain)
     assert "pyramid_of_a_tin" in [note.code for note in analysis.notes]
-    places = {tuple(v) for v in (given + [X, Y, 0]).tolist()}
+    places = {tuple(v) for v in (given + np.array([X, Y, 0])).tolist()}
     for level in range(analysis.n_levels + 1):
         assert places <= {tuple(v) for v in analysis.mesh(level).vertices.tolist()}
     tin = wg.simplify(terrain, vertices=60)
@@ -308,7 +326,8 @@ def test_the_pyramid_of_a_raster_is_refused_in_one_line(dem, dike, tmp_path, cap
     assert main(["analyse", str(dem), str(output), "--breaklines", str(dike)]) == 1
     said = capsys.readouterr().err.strip()
     assert len(said.splitlines()) == 1
-    assert "--breaklines" in said and "simplify" in said
+    assert "--breaklines" in said
+    assert "simplify" in said
     assert not output.exists()
 
 

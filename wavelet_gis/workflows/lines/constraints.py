@@ -128,7 +128,9 @@ def constrained(
     tree = cKDTree(mesh.vertices[:, :2])
     if len(fixed):
         distance, nearest = tree.query(fixed[:, :2])
-        stays[nearest[distance <= same_place(mesh.vertices)]] = False
+        under = np.unique(nearest[(distance <= same_place(mesh.vertices)) & stays[nearest]])
+        stays[under] = False
+        others = np.concatenate([others, mesh.vertices[under]])
         attributes = np.concatenate([attributes[stays], attributes[nearest]])
     else:
         attributes = attributes[stays]
