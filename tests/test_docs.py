@@ -117,3 +117,11 @@ def test_notebooks_run(name, tmp_path, monkeypatch):
             exec(compile(cell.source, name, "exec"), names)
     plt.close("all")
     assert any(isinstance(value, np.ndarray) for value in names.values())
+
+
+def test_every_page_is_in_the_contents():
+    """The site fails to build where one is not."""
+    lines = (ROOT / "docs/index.md").read_text("utf-8").splitlines()
+    for page in PAGES:
+        name = page.removeprefix("docs/").removesuffix(".md")
+        assert name == "index" or name in lines, name
