@@ -178,6 +178,17 @@ def test_points_beneath_a_line_do_not_split_it(tmp_path):
     assert analysis.along_lines.max_error <= 4.0
 
 
+def test_points_at_places_that_lines_take_count_in_the_errors(dem, tmp_path):
+    wall = write_shapes(
+        tmp_path / "wall.gpkg", [line((55, 105, 900), (255, 105, 900))], "LineString Z"
+    )
+    point = shapely.Point(X + 305, Y - 305, 900)
+    fixed = write_shapes(tmp_path / "fixed.gpkg", [point], "Point Z")
+    terrain = wg.open(dem, breaklines=wall, fixed_points=fixed)
+    assert len(terrain.points_for_errors()) == 2000 + 2 + 1  # the cells, both ends, the point
+    assert len(terrain.merged) == 21 + 1
+
+
 def test_fixed_points_stay_at_every_level_where_they_are(tmp_path):
     cloud = write_las(tmp_path / "cloud.laz", 3000)
     given = np.array([[10.5, 20.25, 312.5], [70.125, 55.5, 280.0], [33.0, 81.0, 299.0]])
