@@ -236,7 +236,7 @@ def open_data(
             return load(data)
         return open_input(data, layer=layer, z_field=z_field, **shapes, **options)
     with collected() as notes:
-        terrain = _terrain_of_object(data, z_field, {**options, **shapes})
+        terrain = _terrain_of_object(data, z_field, options, shapes)
         _tell_of_scale(terrain)
     return _with_shapes(terrain.with_notes(notes), shapes)
 
@@ -422,10 +422,12 @@ def _terrain_of_vector(
     )
 
 
-def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) -> Terrain:
+def _terrain_of_object(
+    data: Any, z_field: str | None, options: dict[str, Any], shapes: dict[str, Any]
+) -> Terrain:
     name = type(data).__name__
     system, unit = _system(options), options.get("vertical_unit")
-    given = {**options, "z_field": z_field}
+    given = {**options, **shapes, "z_field": z_field}
     if isinstance(data, Dem):
         require_meaning(name, RASTER, given)
         return terrain_of_dem(name, data, system or CoordinateSystem(), unit)
@@ -447,9 +449,9 @@ def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) 
         from wavelet_gis.io.vector.vector_reader import vector_terrain
 
         names = tuple(options.get("attributes", ()))
-        shapes = np.asarray(data.geometry.values, dtype=object)
+        geometries = np.asarray(data.geometry.values, dtype=object)
         wkt = None if data.crs is None else data.crs.to_wkt()
-        found = vector_terrain(name, shapes, data, wkt, z_field=z_field, attributes=names)
+        found = vector_terrain(name, geometries, data, wkt, z_field=z_field, attributes=names)
         require_meaning(name, POINTS if found.corners is None else TRIANGLES, given)
         return _terrain_of_vector(name, found, system, unit)
     raise OptionError(
