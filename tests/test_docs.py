@@ -6,7 +6,9 @@ from pathlib import Path
 
 import nbformat
 import numpy as np
+import pyogrio
 import pytest
+import shapely
 from gis.samples import hills, write_las, write_tif
 
 from wavelet_gis.cli.main import argument_parser, main
@@ -53,11 +55,29 @@ def test_commands_have_the_options_that_are_shown(page):
         parser.parse_args(words)  # ends the program where it does not know a word
 
 
+def write_breaklines(folder):
+    """Write a line and a polygon with a hole where dem.tif and, the line, cloud.laz are."""
+    # dem.tif lies south of the corner, cloud.laz north of it.
+    line = shapely.LineString([(500020, 5100090), (500090, 5099990), (500300, 5099700)])
+    building = shapely.box(500150, 5099850, 500180, 5099880)
+    domain = shapely.box(500010, 5099650, 500450, 5099990).difference(building)
+    for name, shape in (("breaklines", line), ("domain", domain)):
+        pyogrio.raw.write(
+            folder / f"{name}.gpkg",
+            shapely.to_wkb(np.array([shape])),
+            [],
+            [],
+            geometry_type=shape.geom_type,
+            crs="EPSG:32632",
+        )
+
+
 @pytest.mark.parametrize("page", RUN)
 def test_commands_of_how_to_pages_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write_tif(tmp_path / "dem.tif", hills(40, 50))
     write_las(tmp_path / "cloud.laz", 3000)
+    write_breaklines(tmp_path)
     made = "analyse dem.tif dem.gpkg --partition random --prediction plane --quiet"
     assert main(made.split()) == 0
     for words in command_lines(page):

@@ -55,7 +55,6 @@ class AnalyseTin(AnalysisAlgorithm):
     source: QgsProcessingFeatureSource
     breaklines: QgsProcessingFeatureSource | None
     clip: QgsProcessingFeatureSource | None
-    locked: NDArray[np.bool_] | None
     #: Where the terrain is known along the lines, in the working frame.
     profile: NDArray[np.float64] | None
 
@@ -206,16 +205,14 @@ class AnalyseTin(AnalysisAlgorithm):
         from ..qgis_io.crs_and_progress import coordinate_system
 
         system = coordinate_system(self.source.sourceCrs())
-        self.locked = self.profile = None
+        self.profile = None
         if _holds_polygons(self.source):
             return self._terrain_of_triangles(request, system)
         return self._terrain_of_points(request, system)
 
     def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:
-        """Return the locked vertices and the weights of the attributes."""
-        weights = weight_options(request, terrain.mesh.attribute_names)
-        is_any_locked = self.locked is not None and self.locked.any()
-        return {"attribute_weights": weights, "locked": self.locked if is_any_locked else None}
+        """Return the weights of the attributes."""
+        return {"attribute_weights": weight_options(request, terrain.mesh.attribute_names)}
 
     def more_figures(self, request: Request, geo: GeoPyramid) -> Values:
         """Return how far the coarsest level is from the terrain along the lines."""
@@ -257,9 +254,9 @@ class AnalyseTin(AnalysisAlgorithm):
         import numpy as np
 
         from wavelet_core import TriangleMesh
-        from wavelet_gis.model.drape import default_tolerance, drape
         from wavelet_gis.model.terrain import terrain_of_mesh
         from wavelet_gis.model.tin import frame_of_coordinates, points_merged, tin_with_lines
+        from wavelet_gis.workflows.lines.constraints import Constraints, laid, locked_vertices
 
         from ..qgis_io.constraints import read_constraints
         from ..qgis_io.vectors import read_points
@@ -294,44 +291,44 @@ class AnalyseTin(AnalysisAlgorithm):
                 )
             )
         local = frame.to_local(points.xyz)
-        breaklines = [frame.to_local(line) for line in constraints.breaklines]
-        outline = [frame.to_local(ring) for ring in constraints.outline]
-        if breaklines or outline:
-            request.stage(tr("Laying lines on the terrain"))
-            tolerance = _first_of(request, "LINE_TOLERANCE", "MAX_ERROR")
-            lines = [*breaklines, *outline]
-            within = default_tolerance(local) if tolerance is None else tolerance * frame.z_scale
-            draped = request.computed(
-                lambda work: drape(lines, TriangleMesh.from_points(local), within), 0.05, 0.1
-            )
-            self.profile = draped.profile
-            breaklines, outline = (
-                draped.lines[: len(breaklines)],
-                draped.lines[len(breaklines) :],
-            )
-        request.stage(tr("Triangulating {} points").format(int(inside.sum())))
 
         def contains(positions: NDArray[np.float64]) -> NDArray[np.bool_]:
             x, y = positions.T
             return constraints.contains(np.column_stack([frame.file_x(x), frame.file_y(y)]))
+
+        lines = Constraints(
+            [frame.to_local(line) for line in constraints.breaklines],
+            [frame.to_local(ring) for ring in constraints.outline],
+            contains,
+        )
+        if lines.breaklines or lines.outline:
+            request.stage(tr("Laying lines on the terrain"))
+            tolerance = _first_of(request, "LINE_TOLERANCE", "MAX_ERROR")
+            within = None if tolerance is None else tolerance * frame.z_scale
+            lines, self.profile = request.computed(
+                lambda work: laid(lines, TriangleMesh.from_points(local), within), 0.05, 0.1
+            )
+        request.stage(tr("Triangulating {} points").format(int(inside.sum())))
 
         def triangulate(work: Work) -> ConstrainedTin:
             return tin_with_lines(
                 local[inside],
                 points.attributes[inside],
                 attribute_names,
-                breaklines=breaklines,
-                outline=outline,
+                breaklines=lines.breaklines,
+                outline=lines.outline,
                 contains=contains,
                 is_marked=points.is_marked[inside],
             )
 
         tin = request.computed(triangulate, 0.1, 0.15)
-        self.locked = tin.is_marked
-        if request.flag("LOCK_BREAKLINES"):
-            self.locked = tin.is_marked | tin.is_on_line | tin.is_on_outline
         merged = points_merged(name, points.xyz[inside], local[inside])
-        return replace(terrain_of_mesh(name, tin.mesh, system, frame, unit), merged=merged)
+        return replace(
+            terrain_of_mesh(name, tin.mesh, system, frame, unit),
+            merged=np.concatenate([merged, tin.replaced]),
+            locked=locked_vertices(tin, lines=request.flag("LOCK_BREAKLINES")),
+            profile=self.profile,
+        )
 
 
 def _first_of(request: Request, *names: str) -> float | None:

@@ -72,7 +72,8 @@ def drape(lines: Sequence[FloatArray], mesh: TriangleMesh, tolerance: float) -> 
     profiles = []
     cutter: _Cutter | None = None
     draped = []
-    for line in lines:
+    of_corners = _heights_of_open(lines, mesh)
+    for number, line in enumerate(lines):
         is_open = np.isnan(line[:, 2])
         if not is_open.any():
             draped.append(line)
@@ -80,7 +81,7 @@ def drape(lines: Sequence[FloatArray], mesh: TriangleMesh, tolerance: float) -> 
             continue
         cutter = cutter or _Cutter(mesh)
         corners = line.copy()
-        corners[is_open, 2] = _heights_at(mesh, line[is_open, :2])
+        corners[is_open, 2] = of_corners[number]
         parts, profile = [corners[:1]], [corners[:1]]
         for k in range(len(corners) - 1):
             start, stop = corners[k], corners[k + 1]
@@ -180,6 +181,18 @@ def _needed(path: FloatArray, tolerance: float) -> NDArray[np.bool_]:
             keep[middle] = True
             open_parts += [(first, middle), (middle, last)]
     return keep
+
+
+def _heights_of_open(lines: Sequence[FloatArray], mesh: TriangleMesh) -> list[FloatArray]:
+    """Return, for each line, the heights of the TIN at its corners of unknown z.
+
+    All at once: each search goes over the whole TIN.
+    """
+    places = [line[np.isnan(line[:, 2]), :2] for line in lines]
+    if not sum(map(len, places)):
+        return places
+    heights = _heights_at(mesh, np.concatenate(places))
+    return np.split(heights, np.cumsum([len(place) for place in places])[:-1])
 
 
 def _heights_at(mesh: TriangleMesh, plan: FloatArray) -> FloatArray:

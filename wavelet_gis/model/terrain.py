@@ -59,6 +59,10 @@ class Terrain:
     merged : (n_merged, 3) float64 or None
         Points in the working frame that share x and y with a vertex which stands for them, where
         the origin does not keep them.
+    locked : (n_vertices,) bool or None
+        Vertices that stay at every level: of breaklines and a clip polygon, and fixed points.
+    profile : (n, 3) float64 or None
+        Where the terrain is known along such lines, in the working frame.
     """
 
     name: str
@@ -70,6 +74,8 @@ class Terrain:
     vertical_unit: str
     notes: tuple[Note, ...] = ()
     merged: NDArray[np.float64] | None = None
+    locked: NDArray[np.bool_] | None = None
+    profile: NDArray[np.float64] | None = None
 
     def points_for_errors(self) -> NDArray[np.float64]:
         """Return every input point of the surface in the working frame, merged ones too."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from wavelet_gis.model.terrain import Terrain, frame_of_bounds, terrain_of_mesh
 from wavelet_gis.notes import collected, warn
 
 __all__ = [
+    "SAME_PLACE",
     "ConstrainedTin",
     "frame_of_coordinates",
     "mesh_of_corners",
@@ -34,6 +36,9 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
+#: Points that are closer in plan than this, as a share of the largest coordinate, are at one place.
+SAME_PLACE = 1e-10
+
 
 class ConstrainedTin(NamedTuple):
     """A TIN that has given lines as edges.
@@ -42,12 +47,14 @@ class ConstrainedTin(NamedTuple):
     is_on_line : (n_vertices,) bool, the vertices of the breaklines
     is_on_outline : (n_vertices,) bool, the vertices of the outline
     is_marked : (n_vertices,) bool, the points that were marked
+    replaced : (n_replaced, 3) float64, points on a line, which stands for them
     """
 
     mesh: TriangleMesh
     is_on_line: BoolArray
     is_on_outline: BoolArray
     is_marked: BoolArray
+    replaced: FloatArray
 
 
 def tin_with_lines(
@@ -57,6 +64,7 @@ def tin_with_lines(
     *,
     breaklines: Sequence[FloatArray] = (),
     outline: Sequence[FloatArray] = (),
+    border: Sequence[FloatArray] = (),
     contains: Callable[[FloatArray], BoolArray] | None = None,
     is_marked: BoolArray | None = None,
 ) -> ConstrainedTin:
@@ -73,15 +81,18 @@ def tin_with_lines(
     breaklines, outline : sequence of ndarray, shape (n, 3)
         Lines, and the rings of a clip polygon (closed: the last corner repeats the first). They
         may share corners but must not cross. Where z is NaN it is that of the TIN of the points.
+    border : sequence of ndarray, shape (n, 3)
+        More such lines, of the terrain itself, of which nothing is told in the result.
     contains : callable, optional
-        Takes (m, 2) positions and tells which are inside the clip polygon.
+        Takes (m, 2) positions and tells which are inside outline and border.
     is_marked : ndarray of bool, shape (n_points,), optional
         Points to be told of in the result, for locking.
 
     Returns
     -------
     ConstrainedTin
-        Vertices that lines add have the attributes of the nearest point.
+        Vertices that lines add have the attributes of the nearest point. Points on a line that are
+        not marked are no vertices: they would split its edges.
 
     Raises
     ------
@@ -90,37 +101,38 @@ def tin_with_lines(
     MissingDependencyError
         pythoncdt is absent, and neither SciPy nor GEOS can triangulate the points.
     """
-    n_points = len(points)
     rings = [ring for ring in outline if len(ring) > 1]
-    lines = [line for line in breaklines if len(line) > 1] + rings
-    n_breakline = sum(len(line) for line in lines) - sum(len(ring) for ring in rings)
+    borders = [ring for ring in border if len(ring) > 1]
+    own = [line for line in breaklines if len(line) > 1]
+    lines = [*own, *rings, *borders]
+    n_own, n_rings = (sum(map(len, part)) for part in (own, rings))
     of_lines = np.concatenate(lines) if lines else np.empty((0, 3))
     of_lines = _with_heights(of_lines, points)
+    is_marked = np.zeros(len(points), dtype=bool) if is_marked is None else is_marked
+    splits = _on_segments(points, lines) & ~is_marked
+    replaced, points = points[splits], points[~splits]
+    attributes, is_marked = attributes[~splits], is_marked[~splits]
+    n_points = len(points)
     nearest = cKDTree(points[:, :2]).query(of_lines[:, :2])[1] if len(of_lines) else []
     vertices = np.concatenate([points, of_lines])
     columns = np.concatenate([attributes, attributes[nearest]])
     merged = _merged_by_line(vertices, n_points)
     edges = _edges_of(lines, n_points, merged.representative)
-    on_line = np.zeros(len(vertices), dtype=bool)
-    on_line[n_points : n_points + n_breakline] = True
-    on_outline = np.zeros(len(vertices), dtype=bool)
-    on_outline[n_points + n_breakline :] = True
-    marked = np.zeros(len(vertices), dtype=bool)
-    if is_marked is not None:
-        marked[:n_points] = is_marked
+    part = np.repeat([0, 1, 2, 3], [n_points, n_own, n_rings, len(of_lines) - n_own - n_rings])
+    marked = np.concatenate([is_marked, np.zeros(len(of_lines), dtype=bool)])
     kept, count = merged.kept, len(merged.kept)
     plan = vertices[kept]
     faces = delaunay_faces(plan[:, :2], edges if len(edges) else None)
-    if contains is not None and rings:
-        is_ring = np.zeros(count, dtype=bool)
-        is_ring[merged.representative[n_points + n_breakline :]] = True
-        faces = _inside(plan, faces, is_ring, contains)
+    if contains is not None and (rings or borders):
+        faces = _inside(plan, faces, _any_of(part >= 2, merged.representative, count), contains)
     mesh = TriangleMesh(plan, faces, columns[kept], attribute_names)
+    is_of_line = (kept >= n_points)[merged.representative[:n_points]]
     return ConstrainedTin(
         mesh,
-        _any_of(on_line, merged.representative, count),
-        _any_of(on_outline, merged.representative, count),
+        _any_of(part == 1, merged.representative, count),
+        _any_of(part == 2, merged.representative, count),
         _any_of(marked, merged.representative, count),
+        np.concatenate([replaced, points[is_of_line]]),
     )
 
 
@@ -340,6 +352,33 @@ def _with_heights(of_lines: FloatArray, points: FloatArray) -> FloatArray:
     return of_lines
 
 
+def _on_segments(points: FloatArray, lines: Sequence[FloatArray]) -> BoolArray:
+    """Return which points lie on a segment of the lines, between its ends, in plan."""
+    on = np.zeros(len(points), dtype=bool)
+    if not lines or len(points) == 0:
+        return on
+    start = np.concatenate([line[:-1, :2] for line in lines])
+    along = np.concatenate([line[1:, :2] for line in lines]) - start
+    length = np.hypot(*along.T)
+    start, along, length = (part[length > 0] for part in (start, along, length))
+    near = SAME_PLACE * float(np.abs(points[:, :2]).max())
+    # Each segment looks around as many middles as leave it few points to look at.
+    step = 4.0 * float(np.sqrt(np.prod(np.ptp(points[:, :2], axis=0)) / len(points))) or np.inf
+    n_steps = np.maximum(np.ceil(length / step), 1).astype(np.int64)
+    segment = np.repeat(np.arange(len(length)), n_steps)
+    number = np.arange(len(segment)) - np.repeat(np.cumsum(n_steps) - n_steps, n_steps)
+    middles = start[segment] + ((number + 0.5) / n_steps[segment])[:, None] * along[segment]
+    reach = 0.5 * length[segment] / n_steps[segment] * (1 + 1e-9) + near
+    hits = cKDTree(points[:, :2]).query_ball_point(middles, reach)
+    segment = np.repeat(segment, [len(hit) for hit in hits])
+    point = np.fromiter(chain.from_iterable(hits), dtype=np.int64, count=len(segment))
+    offset, along, length = points[point, :2] - start[segment], along[segment], length[segment]
+    at = (offset * along).sum(axis=1) / length
+    aside = np.abs(offset[:, 0] * along[:, 1] - offset[:, 1] * along[:, 0]) / length
+    on[point[(aside <= near) & (at > near) & (at < length - near)]] = True
+    return on
+
+
 def _merged_by_line(vertices: FloatArray, n_points: int) -> Merged:
     """Merge vertices at one place; those of a line stand for the points there."""
     ranked = vertices.copy()
@@ -367,7 +406,7 @@ def _inside(
     is_ring: BoolArray,
     contains: Callable[[FloatArray], BoolArray],
 ) -> IntArray:
-    """Drop the faces outside the clip polygon: only those between three corners of rings can be."""
+    """Drop the faces outside the rings: only those between three corners of rings can be."""
     doubtful = is_ring[faces].all(axis=1)
     centres = vertices[faces[doubtful], :2].mean(axis=1)
     keep = np.ones(len(faces), dtype=bool)

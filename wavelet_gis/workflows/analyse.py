@@ -9,17 +9,22 @@ from typing import Any, Unpack
 
 from wavelet_core import Progress, TriangleMesh
 from wavelet_core import analyse as core_analyse
+from wavelet_core.errors import OptionError
 from wavelet_gis._memory import require_memory
+from wavelet_gis.model.cloud import PointCloud
+from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.origin import Original
 from wavelet_gis.model.terrain import Terrain
-from wavelet_gis.notes import Note, collected
+from wavelet_gis.notes import Note, collected, note
 from wavelet_gis.progress import Clock, part_of
+from wavelet_gis.workflows.extract import SurfaceErrors
+from wavelet_gis.workflows.lines.errors import figures_along_lines, measured_along_lines
 from wavelet_gis.workflows.options import (
     WaveletOptions,
-    core_options,
     note_moved_outline,
     note_unreached_size,
+    options_for,
     require_terrain,
     warn_of_error_above,
     working_rules,
@@ -40,10 +45,13 @@ class Analysis:
         The pyramid, its frame, CRS, origin, errors and history.
     seconds : dict of str to float
         What the parts of the work took.
+    along_lines : SurfaceErrors or None
+        Of the coarsest level along breaklines and clip polygon, where there are such lines.
     """
 
     geo: GeoPyramid
     seconds: dict[str, float] = field(default_factory=dict)
+    along_lines: SurfaceErrors | None = None
 
     @property
     def n_levels(self) -> int:
@@ -106,6 +114,7 @@ class Analysis:
             "channels": list(pyramid.channels),
             "parameters": dict(pyramid.parameters),
             "levels": [level._asdict() for level in self.geo.errors or ()],
+            **figures_along_lines(self.along_lines),
             "seconds": {name: round(seconds, 3) for name, seconds in self.seconds.items()},
         }
 
@@ -156,14 +165,22 @@ def analyse(
     InputFileError
         There is less memory than the analysis takes.
     OptionError
-        Options that contradict each other or have no meaning.
+        Options that contradict each other or have no meaning, or a raster with lines in it.
     Cancelled
         ``progress`` returned False.
     """
     require_terrain(terrain)
     require_memory(terrain.mesh.n_vertices, 1 + terrain.mesh.attributes.shape[1])
+    _require_reversible(terrain)
     clock = Clock(on_stage)
     with collected() as notes:
+        if isinstance(terrain.original, PointCloud) and terrain.profile is not None:
+            note(
+                "pyramid_of_a_tin",
+                "{name}: with lines or fixed points in it this is a pyramid of a TIN; it gives the "
+                "TIN back, not the point cloud",
+                name=terrain.name,
+            )
         clock.stage("analyse")
         pyramid = core_analyse(
             terrain.mesh,
@@ -175,7 +192,7 @@ def analyse(
                 max_error=max_error,
                 max_rms=max_rms,
             ),
-            **core_options(options),
+            **options_for(terrain, options),
         )
         note_unreached_size(pyramid, target_vertices)
         if options.get("outline_tolerance"):
@@ -195,4 +212,18 @@ def analyse(
                 max_error=max_error,
                 max_rms=max_rms,
             )
-    return Analysis(geo, clock.seconds())
+    along_lines = measured_along_lines(terrain, pyramid.mesh(0))
+    return Analysis(geo, clock.seconds(), along_lines)
+
+
+def _require_reversible(terrain: Terrain) -> None:
+    """Refuse a raster with lines in it: its cells could not come back out of the pyramid."""
+    if isinstance(terrain.original, Dem) and terrain.profile is not None:
+        raise OptionError(
+            "{name}: the pyramid of a raster gives the raster back, which it cannot with {0}, {1} "
+            "or {2}; leave them out, use 'simplify', or analyse the cells as a table of points.",
+            "breaklines",
+            "clip",
+            "fixed_points",
+            name=terrain.name,
+        )

@@ -7,15 +7,19 @@ from typing import Any
 
 from wavelet_gis.errors import InputFileError
 
-__all__ = ["CLOUD", "POINTS", "RASTER", "TABLE", "TRIANGLES", "require_meaning"]
+__all__ = ["CLOUD", "POINTS", "PYRAMID", "RASTER", "TABLE", "TRIANGLES", "require_meaning"]
 
-RASTER, CLOUD, POINTS, TABLE, TRIANGLES = (
+RASTER, CLOUD, POINTS, TABLE, TRIANGLES, PYRAMID = (
     "a raster",
     "a point cloud",
     "a layer of points",
     "a table of points",
     "a layer of triangles",
+    "a pyramid",
 )
+
+#: Of these a TIN is made; one that is a TIN already has its edges.
+_NO_TIN = (RASTER, CLOUD, POINTS, TABLE)
 
 #: For which kinds of input an option is. The others hold for every input, or of themselves.
 _MEANT_FOR = {
@@ -32,6 +36,10 @@ _MEANT_FOR = {
     "concave": (CLOUD,),
     "layer": (POINTS, TRIANGLES),
     "z_field": (POINTS,),
+    "breaklines": _NO_TIN,
+    "clip": _NO_TIN,
+    "fixed_points": _NO_TIN,
+    "line_tolerance": _NO_TIN,
 }
 
 

@@ -33,6 +33,7 @@ from wavelet_gis.workflows.analyse import Analysis
 from wavelet_gis.workflows.input_options import (
     CLOUD,
     POINTS,
+    PYRAMID,
     RASTER,
     TABLE,
     TRIANGLES,
@@ -184,6 +185,10 @@ def open_data(
     *,
     layer: str | None = None,
     z_field: str | None = None,
+    breaklines: Any = None,
+    clip: Any = None,
+    fixed_points: Any = None,
+    line_tolerance: float | None = None,
     **options: Any,
 ) -> Terrain | Analysis:
     """Return the terrain, or the pyramid, in a file or an object.
@@ -196,6 +201,13 @@ def open_data(
         dataset, an xarray DataArray, a GeoDataFrame, a `TriangleMesh`, a `Dem`.
     layer, z_field : str, optional
         Of a vector file: the layer, and the field with the elevation where points have no z.
+    breaklines, clip, fixed_points : path or GeoDataFrame, optional
+        Lines that become edges, polygons of which only the inside is left, and points that become
+        vertices; all of them stay at every level. Lines and points with z keep it, others are laid
+        on the terrain. What comes out is a TIN. See `wavelet_gis.workflows.lines.shapes`.
+    line_tolerance : float, optional
+        How far lines that are laid on the terrain may be off for the sake of fewer vertices, in the
+        unit of z; by default a thousandth of the relief.
     **options
         See `wavelet_gis.workflows.open.open_terrain`: ``band``, ``attributes``, ``classes``,
         ``crs``, ``vertical_unit`` and others.
@@ -212,14 +224,21 @@ def open_data(
     OptionError
         An object of another kind.
     """
+    shapes = {
+        "breaklines": breaklines,
+        "clip": clip,
+        "fixed_points": fixed_points,
+        "line_tolerance": line_tolerance,
+    }
     if isinstance(data, str | os.PathLike):
         if suffix_of(data) == PYRAMID_SUFFIX and _holds_pyramid(data):
+            require_meaning(data, PYRAMID, shapes)
             return load(data)
-        return open_input(data, layer=layer, z_field=z_field, **options)
+        return open_input(data, layer=layer, z_field=z_field, **shapes, **options)
     with collected() as notes:
-        terrain = _terrain_of_object(data, z_field, options)
+        terrain = _terrain_of_object(data, z_field, options, shapes)
         _tell_of_scale(terrain)
-    return terrain.with_notes(notes)
+    return _with_shapes(terrain.with_notes(notes), shapes)
 
 
 def open_input(
@@ -227,6 +246,10 @@ def open_input(
     *,
     layer: str | None = None,
     z_field: str | None = None,
+    breaklines: Any = None,
+    clip: Any = None,
+    fixed_points: Any = None,
+    line_tolerance: float | None = None,
     **options: Any,
 ) -> Terrain:
     """Return the terrain in a file other than a pyramid; see `open_data`.
@@ -235,7 +258,7 @@ def open_input(
     ----------
     path : path
         The file.
-    layer, z_field, **options
+    layer, z_field, breaklines, clip, fixed_points, line_tolerance, **options
         See `open_data`.
 
     Notes
@@ -243,6 +266,12 @@ def open_input(
     A file that may be either is first tried as a raster: a GeoPackage of tiles, a table of x, y
     and z in which GDAL sees a grid.
     """
+    shapes = {
+        "breaklines": breaklines,
+        "clip": clip,
+        "fixed_points": fixed_points,
+        "line_tolerance": line_tolerance,
+    }
     with collected() as notes:
         suffix = suffix_of(path)
         if suffix == PYRAMID_SUFFIX and layer is None and _holds_pyramid(path):
@@ -253,13 +282,21 @@ def open_input(
                 path=path,
             )
         if suffix in (*VECTOR_SUFFIXES, *POINT_TABLE_SUFFIXES) and os.path.isfile(path):
-            terrain = _raster_or_vector(path, layer, z_field, options)
+            terrain = _raster_or_vector(path, layer, z_field, options, shapes)
         else:
             kind = CLOUD if suffix in CLOUD_SUFFIXES else RASTER
             require_meaning(path, kind, {"layer": layer, "z_field": z_field})
             terrain = open_terrain(path, **options)
         _tell_of_scale(terrain)
-    return terrain.with_notes(notes)
+    return _with_shapes(terrain.with_notes(notes), shapes)
+
+
+def _with_shapes(terrain: Terrain, shapes: dict[str, Any]) -> Terrain:
+    if all(value is None for value in shapes.values()):
+        return terrain
+    from wavelet_gis.workflows.lines.shapes import terrain_with_shapes
+
+    return terrain_with_shapes(terrain, **shapes)
 
 
 def load(path: str | os.PathLike[str], *, level: int | None = None) -> Analysis:
@@ -325,10 +362,14 @@ def _holds_pyramid(path: str | os.PathLike[str]) -> bool:
 
 
 def _raster_or_vector(
-    path: str | os.PathLike[str], layer: str | None, z_field: str | None, options: dict[str, Any]
+    path: str | os.PathLike[str],
+    layer: str | None,
+    z_field: str | None,
+    options: dict[str, Any],
+    shapes: dict[str, Any],
 ) -> Terrain:
     names = tuple(options.get("attributes", ()))
-    given = {**options, "layer": layer, "z_field": z_field}
+    given = {**options, **shapes, "layer": layer, "z_field": z_field}
     no_raster: InputFileError | None = None
     if layer is None and z_field is None and not names:
         try:
@@ -381,10 +422,12 @@ def _terrain_of_vector(
     )
 
 
-def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) -> Terrain:
+def _terrain_of_object(
+    data: Any, z_field: str | None, options: dict[str, Any], shapes: dict[str, Any]
+) -> Terrain:
     name = type(data).__name__
     system, unit = _system(options), options.get("vertical_unit")
-    given = {**options, "z_field": z_field}
+    given = {**options, **shapes, "z_field": z_field}
     if isinstance(data, Dem):
         require_meaning(name, RASTER, given)
         return terrain_of_dem(name, data, system or CoordinateSystem(), unit)
@@ -406,9 +449,9 @@ def _terrain_of_object(data: Any, z_field: str | None, options: dict[str, Any]) 
         from wavelet_gis.io.vector.vector_reader import vector_terrain
 
         names = tuple(options.get("attributes", ()))
-        shapes = np.asarray(data.geometry.values, dtype=object)
+        geometries = np.asarray(data.geometry.values, dtype=object)
         wkt = None if data.crs is None else data.crs.to_wkt()
-        found = vector_terrain(name, shapes, data, wkt, z_field=z_field, attributes=names)
+        found = vector_terrain(name, geometries, data, wkt, z_field=z_field, attributes=names)
         require_meaning(name, POINTS if found.corners is None else TRIANGLES, given)
         return _terrain_of_vector(name, found, system, unit)
     raise OptionError(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol, TypedDict
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from wavelet_core import Pyramid, TriangleMesh
@@ -23,6 +24,7 @@ __all__ = [
     "core_options",
     "note_moved_outline",
     "note_unreached_size",
+    "options_for",
     "pyramid_of",
     "require_levels",
     "require_terrain",
@@ -88,6 +90,25 @@ def core_options(options: WaveletOptions) -> dict[str, Any]:
             "update",
         )
     return {"prediction": design, "partition": "quadric", **given}
+
+
+def options_for(terrain: Terrain, options: WaveletOptions) -> dict[str, Any]:
+    """Return the options as keywords of the core, with the vertices that a terrain locks.
+
+    Parameters
+    ----------
+    terrain : Terrain
+        Whose lines and fixed points are locked.
+    options : WaveletOptions
+        See `core_options`; what they lock is locked too.
+    """
+    keywords = core_options(options)
+    if terrain.locked is not None and terrain.locked.any():
+        also = np.asarray(keywords.get("locked", terrain.locked))
+        # Of another length it is for the core to refuse.
+        is_mask = also.shape == terrain.locked.shape and also.dtype == bool
+        keywords["locked"] = terrain.locked | also if is_mask else also
+    return keywords
 
 
 def working_rules(

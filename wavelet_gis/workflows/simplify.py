@@ -24,12 +24,13 @@ from wavelet_gis.notes import Note, collected
 from wavelet_gis.progress import Clock, part_of
 from wavelet_gis.workflows.analyse import Analysis
 from wavelet_gis.workflows.extract import Surface, SurfaceErrors, measured
+from wavelet_gis.workflows.lines.errors import figures_along_lines, measured_along_lines
 from wavelet_gis.workflows.options import (
     ROUNDING,
     WaveletOptions,
-    core_options,
     note_moved_outline,
     note_unreached_size,
+    options_for,
     require_terrain,
     warn_of_error_above,
     working_rules,
@@ -54,12 +55,15 @@ class Simplified(Surface):
         level first, empty where nothing was refined.
     seconds : dict of str to float
         What the parts of the work took.
+    along_lines : SurfaceErrors or None
+        Along breaklines and clip polygon, where there are such lines.
     """
 
     terrain: Terrain | None = None
     is_fitted: bool = False
     rounds: tuple[Round, ...] = ()
     seconds: dict[str, float] | None = None
+    along_lines: SurfaceErrors | None = None
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -133,6 +137,7 @@ class Simplified(Surface):
         return {
             "n_input_vertices": pyramid.n_vertices(pyramid.n_levels),
             **Surface.figures(self),
+            **figures_along_lines(self.along_lines),
             "n_levels": pyramid.n_levels,
             "stopped_by": None if pyramid.stop is None else pyramid.stop.reason,
             "rounds": [here._asdict() for here in self.rounds],
@@ -205,7 +210,7 @@ def simplify(
             "fit",
             "keep_points",
         )
-    keywords = core_options(options)
+    keywords = options_for(terrain, options)
     if keep_points:
         keywords = _without_update(keywords)
     clock = Clock(on_stage)
@@ -259,6 +264,7 @@ def simplify(
             for here in tin.rounds
         ),
         seconds=clock.seconds(),
+        along_lines=measured_along_lines(terrain, tin.mesh),
     )
 
 

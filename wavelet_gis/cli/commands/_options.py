@@ -21,10 +21,13 @@ if TYPE_CHECKING:
 __all__ = [
     "INPUTS",
     "add_input_arguments",
+    "add_line_arguments",
     "add_overwrite_argument",
     "add_surface_arguments",
     "add_wavelet_arguments",
+    "input_files",
     "length",
+    "line_options",
     "names",
     "open_given",
     "surface_formats",
@@ -122,6 +125,50 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_line_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the shapes that a triangulation must respect."""
+    group = parser.add_argument_group(
+        "lines", "each FILE is a vector file of one layer, in any CRS; what it holds stays"
+    )
+    group.add_argument(
+        "--breaklines",
+        metavar="FILE",
+        help="lines that become edges of the TIN; those without z are laid on the terrain",
+    )
+    group.add_argument(
+        "--clip", metavar="FILE", help="polygons; only the terrain inside, their rings as edges"
+    )
+    group.add_argument(
+        "--fixed-points", metavar="FILE", help="points that become vertices, laid on it or with z"
+    )
+    group.add_argument(
+        "--line-tolerance",
+        type=float,
+        metavar="M",
+        help="how far such a line may be above or below the terrain for the sake of fewer "
+        "vertices, in the unit of z; by default --max-error, else a thousandth of the relief",
+    )
+
+
+def line_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return the shapes that are given; without a tolerance of their own, lines have the TIN's."""
+    tolerance = arguments.line_tolerance
+    if tolerance is None and (arguments.breaklines or arguments.clip):
+        tolerance = arguments.max_error
+    return {
+        "breaklines": arguments.breaklines,
+        "clip": arguments.clip,
+        "fixed_points": arguments.fixed_points,
+        "line_tolerance": tolerance,
+    }
+
+
+def input_files(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """Return every file that is read, none of which an output may replace."""
+    lines = (arguments.breaklines, arguments.clip, arguments.fixed_points)
+    return (arguments.input, *(path for path in lines if path))
+
+
 def open_given(arguments: argparse.Namespace) -> Terrain:
     """Return the terrain that the input arguments name."""
     from wavelet_gis.workflows.open import open_input
@@ -144,6 +191,7 @@ def open_given(arguments: argparse.Namespace) -> Terrain:
         duplicates=arguments.duplicates,
         max_edge=arguments.max_edge,
         concave=arguments.concave,
+        **line_options(arguments),
     )
 
 

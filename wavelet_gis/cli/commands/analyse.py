@@ -9,8 +9,10 @@ from wavelet_gis.cli.commands._options import (
     INPUTS,
     add_input_arguments,
     add_layers_argument,
+    add_line_arguments,
     add_overwrite_argument,
     add_wavelet_arguments,
+    input_files,
     open_given,
     wavelet_options,
 )
@@ -43,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--max-rms", type=float, metavar="M", help="the same for the root mean square"
     )
     add_input_arguments(parser)
+    add_line_arguments(parser)
     add_wavelet_arguments(parser)
     output = parser.add_argument_group("output")
     add_overwrite_argument(output)  # type: ignore[arg-type]
@@ -66,7 +69,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         arguments.output,
         overwrite=arguments.overwrite,
         suffixes=(PYRAMID_SUFFIX,),
-        inputs=(arguments.input,),
+        inputs=input_files(arguments),
     )
     clock = Clock()
     clock.stage("read")
@@ -102,6 +105,8 @@ def _report(
 ) -> None:
     import os
 
+    from wavelet_gis.workflows.lines.errors import line_about
+
     figures = analysis.figures()
     if analysis.geo.errors is not None:
         console.table(
@@ -113,6 +118,8 @@ def _report(
         f"{figures['n_levels']} levels down to {figures['n_coarse_vertices']:,} vertices; "
         f"{sum(seconds.values()):.1f} s; {arguments.output}"
     )
+    if analysis.along_lines is not None:
+        console.say(line_about(analysis.along_lines, analysis.geo.vertical_unit))
     rounded = {name: round(value, 3) for name, value in seconds.items()}
     output = {
         "output": str(arguments.output),

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 from wavelet_gis.cli.commands._options import (
     INPUTS,
     add_input_arguments,
+    add_line_arguments,
     add_overwrite_argument,
     add_surface_arguments,
     add_wavelet_arguments,
+    input_files,
     length,
     open_given,
     surface_formats,
@@ -88,18 +90,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_surface_arguments(parser)
     add_input_arguments(parser)
+    add_line_arguments(parser)
     add_wavelet_arguments(parser)
     add_overwrite_argument(parser)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
+    from wavelet_gis.workflows.lines.errors import line_about
     from wavelet_gis.workflows.save import check_surface_output, save
     from wavelet_gis.workflows.simplify import simplify
 
     options = surface_options(arguments)
     check_surface_output(
-        arguments.output, overwrite=arguments.overwrite, inputs=(arguments.input,), **options
+        arguments.output, overwrite=arguments.overwrite, inputs=input_files(arguments), **options
     )
     began = perf_counter()
     terrain = open_given(arguments)
@@ -124,6 +128,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"{figures['max_error']:.4g} ({terrain.vertical_unit}) at all input points; "
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
+    if tin.along_lines is not None:
+        console.say(line_about(tin.along_lines, terrain.vertical_unit))
     console.figures({"output": str(arguments.output), **figures})
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from wavelet_gis.errors import InputFileError, LayerWarning
 from wavelet_gis.io.libraries import silent_libraries
 from wavelet_gis.notes import warn
 
-__all__ = ["VectorTerrain", "read_vector", "vector_terrain"]
+__all__ = ["VectorTerrain", "read_shapes", "read_vector", "vector_terrain"]
 
 #: What pyogrio lets through of what a damaged file makes of it.
 _READ_ERRORS = (ValueError, KeyError, IndexError, OverflowError)
@@ -61,17 +62,42 @@ def read_vector(
     InputFileError
         When the file cannot be read, or `vector_terrain` refuses it.
     """
+    wanted = [*([z_field] if z_field else []), *attributes]
+    shapes, table, wkt = read_shapes(path, layer, wanted)
+    return vector_terrain(
+        os.fspath(path), shapes, table, wkt, z_field=z_field, attributes=attributes
+    )
+
+
+def read_shapes(
+    path: str | os.PathLike[str], layer: str | None = None, fields: Sequence[str] = ()
+) -> tuple[NDArray[Any], dict[str, NDArray[Any]], str | None]:
+    """Return the shapes in a vector file, fields of theirs, and the WKT of the CRS.
+
+    Parameters
+    ----------
+    path : path
+        Any vector file that GDAL reads.
+    layer : str, optional
+        Where the file holds several.
+    fields : sequence of str
+        Which to read.
+
+    Raises
+    ------
+    InputFileError
+        When the file cannot be read.
+    """
     import pyogrio
     import shapely
 
     name = os.fspath(path)
-    wanted = [*([z_field] if z_field else []), *attributes]
     try:
         with silent_libraries() as said, warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
             if layer is None:
                 layer = _only_layer(name, pyogrio.list_layers(name))
-            meta, _, geometry, columns = pyogrio.raw.read(name, layer=layer, columns=wanted)
+            meta, _, geometry, columns = pyogrio.raw.read(name, layer=layer, columns=list(fields))
     except (*_READ_ERRORS, pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
         lines = str(error).splitlines() or [type(error).__name__]
         reason = lines[0].rstrip(".")
@@ -92,8 +118,7 @@ def read_vector(
             name=name,
             complaint=said[0],
         )
-    table = dict(zip(meta["fields"], columns, strict=True))
-    return vector_terrain(name, shapes, table, meta["crs"], z_field=z_field, attributes=attributes)
+    return shapes, dict(zip(meta["fields"], columns, strict=True)), meta["crs"]
 
 
 def _only_layer(name: str, layers: NDArray[Any]) -> str:

@@ -1,0 +1,1 @@
+"""Breaklines, a clip polygon and fixed points in a terrain."""

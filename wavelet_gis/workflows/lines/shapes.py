@@ -1,0 +1,390 @@
+"""Shapes of files and objects as constraints of a terrain: brought to its frame, cut, put in order.
+
+Everything happens in the working frame, where the corners of the terrain's own outline are vertices
+to the last bit.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from wavelet_core import TriangleMesh
+from wavelet_core.errors import OptionError
+from wavelet_core.mesh.location import cover_of
+from wavelet_gis.crs.frame import CoordinateSystem
+from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, LayerWarning
+from wavelet_gis.model.terrain import Terrain
+from wavelet_gis.notes import collected, note, warn
+from wavelet_gis.workflows.lines.constraints import Constraints, constrained, same_place
+
+__all__ = ["terrain_with_shapes"]
+
+FloatArray = NDArray[np.float64]
+Shapes = NDArray[Any]
+
+#: Type ids of shapely, single and multi, and what such shapes are called.
+_POINTS, _LINES, _POLYGONS = ((0, 4), "points"), ((1, 2, 5), "lines"), ((3, 6), "polygons")
+
+#: A terrain whose outline takes this much of its convex hull has no gaps.
+_WHOLE = 1 - 1e-6
+
+
+def terrain_with_shapes(
+    terrain: Terrain,
+    *,
+    breaklines: Any = None,
+    clip: Any = None,
+    fixed_points: Any = None,
+    line_tolerance: float | None = None,
+) -> Terrain:
+    """Return a terrain with breaklines as edges, clipped, and with fixed points.
+
+    Parameters
+    ----------
+    terrain : Terrain
+        Of a raster, a point cloud or points.
+    breaklines : path or GeoDataFrame, optional
+        Lines. With z they keep it; without it they are laid on the terrain.
+    clip : path or GeoDataFrame, optional
+        Polygons; only the terrain inside is left, their rings become edges.
+    fixed_points : path or GeoDataFrame, optional
+        Points that become vertices; without z they are laid on the terrain.
+    line_tolerance : float, optional
+        How far a line that is laid on the terrain may be off for the sake of fewer vertices, in the
+        unit of z; by default a thousandth of the relief.
+
+    Raises
+    ------
+    InputFileError
+        A file that cannot be read, shapes of another kind, or none where the terrain is.
+    CrsError
+        Shapes that cannot be brought to the CRS of the terrain.
+    OptionError
+        A tolerance without lines, or one that is no length.
+    """
+    if line_tolerance is not None and not 0 <= line_tolerance < np.inf:
+        raise OptionError("{0} is {given}; give 0 or more.", "line_tolerance", given=line_tolerance)
+    if breaklines is None and clip is None:
+        if line_tolerance is not None:
+            raise OptionError(
+                "{0} is for lines; give {1} or {2}, or leave it out.",
+                "line_tolerance",
+                "breaklines",
+                "clip",
+            )
+        if fixed_points is None:
+            return terrain
+    with collected() as notes:
+        mesh = terrain.mesh
+        snap = _snapping(mesh)
+        domain, is_whole = _domain(mesh)
+        area, cutter = domain, None
+        if clip is not None:
+            cutter = _united(_shapes(terrain, clip, "clip", _POLYGONS))
+            area = _polygons_in(domain.intersection(cutter))
+            if area.is_empty:
+                raise _beside(terrain, "clip")
+        lines = fixed = None
+        if breaklines is not None:
+            lines = snap(_lines_in(_shapes(terrain, breaklines, "breaklines", _LINES)))
+        if fixed_points is not None:
+            fixed = snap(_shapes(terrain, fixed_points, "fixed_points", _POINTS))
+        constraints = _cut(terrain, lines, cutter, domain, is_whole)
+        if fixed is not None:
+            constraints = constraints._replace(points=_points_within(terrain, fixed, area))
+        result = constrained(terrain, constraints, line_tolerance)
+    return result.with_notes([*terrain.notes, *notes])
+
+
+def _shapes(terrain: Terrain, data: Any, option: str, kind: tuple[tuple[int, ...], str]) -> Shapes:
+    """Return the shapes of a file or a GeoDataFrame in the working frame; z is NaN for none."""
+    import shapely
+
+    if isinstance(data, str | os.PathLike):
+        from wavelet_gis.io.vector.vector_reader import read_shapes
+
+        name = os.fspath(data)
+        try:
+            shapes, _, wkt = read_shapes(name)
+        except InputFileError as error:
+            if error.options:  # names the option for a layer of the input
+                raise InputFileError(
+                    "{path}: {0} is to be a file of one layer; copy that layer into a file of its "
+                    "own.",
+                    option,
+                    path=name,
+                ) from error
+            raise
+    elif all(hasattr(data, part) for part in ("geometry", "crs", "columns")):
+        name, shapes = type(data).__name__, np.asarray(data.geometry.values, dtype=object)
+        wkt = None if data.crs is None else data.crs.to_wkt()
+    else:
+        raise OptionError(
+            "{0} is a {given}; give a path or a GeoDataFrame.", option, given=type(data).__name__
+        )
+    shapes = shapes[~(shapely.is_missing(shapes) | shapely.is_empty(shapes))]
+    kinds, noun = kind
+    if len(shapes) == 0 or not set(shapely.get_type_id(shapes).tolist()) <= set(kinds):
+        raise InputFileError(
+            "{name}: {0} are to be {noun}, and the layer holds {found}; give a layer of {noun}.",
+            option,
+            name=name,
+            noun=noun,
+            found="none" if len(shapes) == 0 else "others",
+        )
+    move = _into_frame(terrain, name, wkt)
+    return np.asarray(shapely.transform(shapes, move, include_z=True), dtype=object)
+
+
+def _into_frame(terrain: Terrain, name: str, wkt: str | None) -> Callable[[FloatArray], FloatArray]:
+    """Return the map from a layer's coordinates to the working frame."""
+    from wavelet_gis.crs.lookup import coordinate_system
+    from wavelet_gis.crs.projection import projected
+
+    there: CoordinateSystem = coordinate_system(wkt)
+    here = terrain.system
+    is_moved = there.wkt is not None and here.wkt is not None and there.wkt != here.wkt
+    if (there.wkt is None) != (here.wkt is None):
+        warn(
+            CrsWarning,
+            "shapes_taken_as_they_are",
+            "{name}: its CRS is {there} and that of the terrain {here}; x and y are taken as they "
+            "are",
+            stacklevel=4,
+            name=name,
+            there=there.name,
+            here=here.name,
+        )
+
+    def move(coordinates: FloatArray) -> FloatArray:
+        if not np.isfinite(coordinates[:, :2]).all() or np.isinf(coordinates[:, 2]).any():
+            raise InputFileError(
+                "{name}: a coordinate is no finite number; leave that shape out.", name=name
+            )
+        moved = np.array(coordinates, dtype=np.float64)
+        if is_moved:
+            try:
+                moved[:, 0], moved[:, 1] = projected(there, here, *coordinates[:, :2].T)
+            except CrsError as error:
+                raise CrsError(
+                    "{name}: {there} cannot be brought to {here} here; transform the layer first.",
+                    name=name,
+                    there=there.name,
+                    here=here.name,
+                ) from error
+        return terrain.frame.to_local(moved)
+
+    return move
+
+
+def _snapping(mesh: TriangleMesh) -> Callable[[Shapes], Shapes]:
+    """Return what moves corners that are at the place of a vertex onto it, to the last bit."""
+    import shapely
+
+    near, tree = same_place(mesh.vertices), cKDTree(mesh.vertices[:, :2])
+
+    def snap(coordinates: FloatArray) -> FloatArray:
+        distance, nearest = tree.query(coordinates[:, :2], distance_upper_bound=near)
+        is_there = np.isfinite(distance)
+        snapped = np.array(coordinates)
+        snapped[is_there, :2] = mesh.vertices[nearest[is_there], :2]
+        return snapped
+
+    return lambda shapes: np.asarray(shapely.transform(shapes, snap, include_z=True), dtype=object)
+
+
+def _domain(mesh: TriangleMesh) -> tuple[Any, bool]:
+    """Return the area that the faces cover, and whether it is its own convex hull."""
+    import shapely
+
+    starts = mesh.faces.ravel()
+    ends = np.roll(mesh.faces, -1, axis=1).ravel()
+    key, back = starts * mesh.n_vertices + ends, ends * mesh.n_vertices + starts
+    outer = ~np.isin(key, back)
+    plan = mesh.vertices[:, :2]
+    edges = shapely.linestrings(np.stack([plan[starts[outer]], plan[ends[outer]]], axis=1))
+    rings = shapely.get_parts(shapely.polygonize(edges))
+    # What rings enclose is either terrain or a gap.
+    inside = shapely.get_coordinates(shapely.point_on_surface(rings))
+    covered = np.zeros(len(rings), dtype=bool)
+    covered[cover_of(mesh, inside).point] = True
+    area = shapely.union_all(rings[covered])
+    is_whole = bool(area.area >= _WHOLE * area.convex_hull.area)
+    return (area.convex_hull if is_whole else area), is_whole
+
+
+def _united(polygons: Shapes) -> Any:
+    import shapely
+
+    flat = shapely.force_2d(polygons)
+    return _polygons_in(shapely.union_all(shapely.make_valid(flat)))
+
+
+def _polygons_in(shape: Any) -> Any:
+    """Return the polygons among the parts of a shape as one."""
+    import shapely
+
+    parts = shapely.get_parts(shapely.get_parts(shape))
+    return shapely.union_all(parts[shapely.get_dimensions(parts) == 2])
+
+
+def _lines_in(shapes: Shapes) -> Shapes:
+    import shapely
+
+    parts = shapely.get_parts(shapes)
+    return parts[shapely.length(parts) > 0]
+
+
+def _cut(
+    terrain: Terrain, lines: Shapes | None, clip: Any, domain: Any, is_whole: bool
+) -> Constraints:
+    """Return lines and rings cut where they meet one another, and told apart again."""
+    import shapely
+
+    near = same_place(terrain.mesh.vertices)
+    area = domain if clip is None else _polygons_in(domain.intersection(clip))
+    outline = shapely.LineString() if clip is None else clip.boundary
+    whole = shapely.LineString()
+    if lines is not None:
+        whole = shapely.union_all(shapely.force_2d(lines))
+        share = whole.intersection(area).length / whole.length if whole.length else 0.0
+        if share == 0:
+            raise _beside(terrain, "breaklines")
+        _tell_of_cuts(terrain, lines, 1 - share)
+    pieces = shapely.get_parts(shapely.union_all([whole, outline, domain.boundary]))
+    middles = shapely.line_interpolate_point(pieces, 0.5, normalized=True)
+    shapely.prepare(area)
+    stays = shapely.dwithin(area, middles, near) & (shapely.length(pieces) > near)
+    pieces = pieces[stays]
+    on_outline = _lie_on(pieces, outline, near)
+    on_border = ~on_outline & _lie_on(pieces, domain.boundary, near)
+    arrays = _with_heights(pieces, lines, near)
+
+    def contains(positions: FloatArray) -> NDArray[np.bool_]:
+        return np.asarray(shapely.intersects_xy(area, *positions.T))
+
+    return Constraints(
+        [arrays[k] for k in np.flatnonzero(~(on_outline | on_border))],
+        [arrays[k] for k in np.flatnonzero(on_outline)],
+        None if clip is None and is_whole else contains,
+        # A hull without gaps is the outline of any triangulation.
+        () if is_whole else [arrays[k] for k in np.flatnonzero(on_border)],
+    )
+
+
+def _tell_of_cuts(terrain: Terrain, lines: Shapes, share_outside: float) -> None:
+    import shapely
+
+    flat = shapely.force_2d(lines)
+    a, b = shapely.STRtree(flat).query(flat, predicate="crosses")
+    n_crossings = int(np.count_nonzero(a < b)) + int(np.count_nonzero(~shapely.is_simple(flat)))
+    if n_crossings:
+        note(
+            "breaklines_cross",
+            "{name}: breaklines cross one another ({n_crossings} pairs); they are cut there",
+            name=terrain.name,
+            n_crossings=n_crossings,
+        )
+    if share_outside > 1e-6:
+        note(
+            "breaklines_outside",
+            "{name}: {share:.1%} of the length of the breaklines is beside the terrain and left "
+            "out",
+            name=terrain.name,
+            share=share_outside,
+        )
+
+
+def _lie_on(pieces: Shapes, line: Any, near: float) -> NDArray[np.bool_]:
+    """Return which pieces run along a line: at three places between their ends."""
+    import shapely
+
+    if line.is_empty:
+        return np.zeros(len(pieces), dtype=bool)
+    shapely.prepare(line)
+    along = np.ones(len(pieces), dtype=bool)
+    for share in (0.21, 0.5, 0.83):
+        place = shapely.line_interpolate_point(pieces, share, normalized=True)
+        along &= shapely.dwithin(place, line, near)
+    return along
+
+
+def _with_heights(pieces: Shapes, lines: Shapes | None, near: float) -> list[FloatArray]:
+    """Return the corners of pieces with the z that the lines have there, NaN where they have none.
+
+    Where lines of different heights meet, the mean is taken, and told.
+    """
+    import shapely
+
+    plan, owner = shapely.get_coordinates(pieces, return_index=True)
+    z = np.full(len(plan), np.nan)
+    segments = _segments_with_z(lines)
+    if len(segments):
+        tree = shapely.STRtree(shapely.linestrings(segments[:, :, :2]))
+        point, segment = tree.query(shapely.points(plan), predicate="dwithin", distance=near)
+        start, stop = segments[segment, 0], segments[segment, 1]
+        along = stop[:, :2] - start[:, :2]
+        at = ((plan[point] - start[:, :2]) * along).sum(axis=1) / (along**2).sum(axis=1)
+        height = start[:, 2] + np.clip(at, 0, 1) * (stop[:, 2] - start[:, 2])
+        count = np.bincount(point, minlength=len(plan))
+        known = count > 0
+        total = np.bincount(point, height, len(plan))
+        z[known] = total[known] / count[known]
+        apart = np.abs(height - z[point]).max(initial=0.0)
+        if apart > 1e-6 + near:
+            warn(
+                LayerWarning,
+                "heights_of_lines_differ",
+                "breaklines that meet are up to {apart:.4g} apart in height, in the working unit; "
+                "the mean is taken",
+                stacklevel=5,
+                apart=2 * float(apart),
+            )
+    corners = np.column_stack([plan, z])
+    return np.split(corners, np.flatnonzero(np.diff(owner)) + 1) if len(corners) else []
+
+
+def _segments_with_z(lines: Shapes | None) -> FloatArray:
+    import shapely
+
+    if lines is None:
+        return np.empty((0, 2, 3))
+    corners, owner = shapely.get_coordinates(lines, include_z=True, return_index=True)
+    segments = np.stack([corners[:-1], corners[1:]], axis=1)
+    is_one = (owner[1:] == owner[:-1]) & np.isfinite(segments[:, :, 2]).all(axis=1)
+    return segments[is_one & (segments[:, 0, :2] != segments[:, 1, :2]).any(axis=1)]
+
+
+def _points_within(terrain: Terrain, shapes: Shapes, area: Any) -> FloatArray:
+    """Return the fixed points inside, each place once."""
+    import shapely
+
+    points = shapely.get_coordinates(shapes, include_z=True)
+    _, first = np.unique(points[:, :2], axis=0, return_index=True)
+    points = points[np.sort(first)]
+    inside = shapely.intersects_xy(area, *points[:, :2].T)
+    if not inside.any():
+        raise _beside(terrain, "fixed_points")
+    if not inside.all():
+        note(
+            "fixed_points_outside",
+            "{name}: {n_points} fixed points are beside the terrain and left out",
+            name=terrain.name,
+            n_points=int(np.count_nonzero(~inside)),
+        )
+    return points[inside]
+
+
+def _beside(terrain: Terrain, option: str) -> InputFileError:
+    return InputFileError(
+        "{name}: nothing of {0} is where the terrain is; check that the files overlap, and their "
+        "CRS.",
+        option,
+        name=terrain.name,
+    )
