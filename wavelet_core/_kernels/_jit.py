@@ -6,6 +6,9 @@ the same order: the bytes are the same. The loops themselves, run by Python, are
 tests hold both against; in use they run only for the two kernels without a twin, those of the
 NNLS and least squares predictions. docs/engines.md tells a user the same.
 
+Squares are written as products there: Python's ``x**2`` is one of the C library's powers, which may
+be off by the last bit.
+
 The kernels release the GIL and are run over ranges of their index space by Python threads
 (:func:`run_in_ranges`) rather than by numba's ``prange``: numba's threading layers are not safe to
 enter from several threads at once, which is what happens inside QGIS, and a range-wise kernel gives
@@ -180,11 +183,13 @@ def njit(function: Callable[..., Any]) -> Any:
 def inlined(function: Callable[..., Any]) -> Any:
     """Compile ``function`` into its callers: a call with many arrays costs more than its work.
 
-    Measured: costing a collapse took 1.7 times as long with plain calls.
+    Measured: costing a collapse took 1.7 times as long with plain calls. Nor are the references to
+    its arrays counted (``_nrt``), since it makes none and its callers hold them all: counting them
+    in each call took two fifths of that time.
     """
     if _numba is None:
         return function
-    return _numba.njit(forceinline=True, nogil=True, error_model="numpy")(function)
+    return _numba.njit(forceinline=True, nogil=True, error_model="numpy", _nrt=False)(function)
 
 
 @functools.cache

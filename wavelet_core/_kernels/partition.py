@@ -54,7 +54,8 @@ def label(
             else:
                 error = 0.0
                 for i in range(points.shape[1]):
-                    error += (points[neighbour, i] - points[v, i]) ** 2
+                    side = points[neighbour, i] - points[v, i]
+                    error += side * side
             if best >= 0 and (
                 error > best_error or (error == best_error and neighbour > ring[base + best])
             ):

@@ -47,7 +47,8 @@ def geometric_weights(start, stop, odd, row_indptr, indptr, ring, points, weight
             neighbour = ring[base + k]
             squared = 0.0
             for i in range(points.shape[1]):
-                squared += (points[neighbour, i] - points[v, i]) ** 2
+                side = points[neighbour, i] - points[v, i]
+                squared += side * side
             weights[first + k] = 1.0 / max(math.sqrt(squared), SHORTEST_EDGE)
             total += weights[first + k]
         for k in range(first, last):
@@ -96,7 +97,8 @@ def damped_gram(v, base, size, ring, points, damping, gram):
     scale = 0.0
     for k in range(size):
         for i in range(points.shape[1]):
-            scale += (points[ring[base + k], i] - points[v, i]) ** 2
+            side = points[ring[base + k], i] - points[v, i]
+            scale += side * side
     scale /= size
     if scale <= 0.0:
         return scale
@@ -242,7 +244,7 @@ def plane_weights(start, stop, odd, row_indptr, indptr, ring, plan, weights):
             xy += x * y
             yy += y * y
         determinant = xx * yy - xy * xy
-        is_sound = determinant > LEAST_PLANE_DETERMINANT * (xx + yy) ** 2
+        is_sound = determinant > LEAST_PLANE_DETERMINANT * (xx + yy) * (xx + yy)
         norm = 0.0
         if is_sound:
             slope_x = (yy * mean_x - xy * mean_y) / determinant
@@ -251,7 +253,7 @@ def plane_weights(start, stop, odd, row_indptr, indptr, ring, plan, weights):
                 x = plan[ring[base + k], 0] - plan[v, 0] - mean_x
                 y = plan[ring[base + k], 1] - plan[v, 1] - mean_y
                 weights[first + k] = 1.0 / size - slope_x * x - slope_y * y
-                norm += weights[first + k] ** 2
+                norm += weights[first + k] * weights[first + k]
         if not is_sound or norm > LARGEST_PLANE_NORM:
             for k in range(first, first + size):
                 weights[k] = 1.0 / size
