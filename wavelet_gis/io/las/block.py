@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from wavelet_gis.io.las.layout import (
     EVLRS,
+    LONG_RETURNS,
     POINT_COUNT,
     RECORD_LENGTHS,
+    RETURNS,
     SCALING,
     SIZES,
     WAVEFORM,
@@ -37,9 +39,6 @@ _STALE_OWNERS = ("laszip encoded", "copc")
 _DESCRIPTION = 192
 _TYPE_SIZES = (0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8)
 _FLOAT32 = 9
-
-#: Offsets of the tables of points by return, before and since LAS 1.4.
-_RETURNS, _LONG_RETURNS = 111, 255
 
 #: Points that the fields of LAS 1.3 and older can count.
 _LEGACY_LIMIT = 1 << 32
@@ -175,10 +174,10 @@ def with_counts(
     is_legacy = minor < 4 or struct.unpack_from("<I", block, SIZES + 13)[0] != 0
     if is_legacy and n_points < _LEGACY_LIMIT:
         struct.pack_into("<I", told, SIZES + 13, n_points)
-        struct.pack_into("<5I", told, _RETURNS, *by_return[:5].tolist())
+        struct.pack_into("<5I", told, RETURNS, *by_return[:5].tolist())
     if minor >= 4:
         struct.pack_into("<Q", told, POINT_COUNT, n_points)
-        struct.pack_into("<15Q", told, _LONG_RETURNS, *by_return.tolist())
+        struct.pack_into("<15Q", told, LONG_RETURNS, *by_return.tolist())
     extent = np.array([cloud.integers.max(axis=0), cloud.integers.min(axis=0)])
     ends = np.sort(extent * cloud.scales + cloud.offsets, axis=0)[::-1]  # a scale may be negative
     struct.pack_into("<6d", told, SCALING + 48, *ends.T.ravel().tolist())

@@ -47,6 +47,8 @@ _VLR_HEADER, _EVLR_HEADER = struct.Struct("<H16sHH32s"), struct.Struct("<H16sHQ3
 
 #: Where the header holds what is read or written here.
 ENCODING, SIZES, SCALING, WAVEFORM, EVLRS, POINT_COUNT = 6, 94, 131, 227, 235, 247
+#: The tables of points by return, before and since LAS 1.4.
+RETURNS, LONG_RETURNS = 111, 255
 
 #: Global encoding: where the waveform packets are.
 _WAVEFORMS_INSIDE, _WAVEFORMS_OUTSIDE = 2, 4
@@ -235,6 +237,7 @@ def parse_layout(name: str, block: bytes, size: int | None = None) -> LasLayout:
         notes.append(f"LAS 1.{minor} has no point format {point_format}; it is read as it stands")
     if minor >= 4:
         n_points = _point_count(n_points, struct.unpack_from("<Q", block, POINT_COUNT)[0], notes)
+    _check_returns(block, minor, n_points, notes)
     numbers = struct.unpack_from("<12d", block, SCALING)
     _check_scaling(name, numbers[:3], numbers[3:6])
     layout = LasLayout(
@@ -334,6 +337,18 @@ def _point_count(legacy: int, count: int, notes: list[str]) -> int:
         return legacy
     notes.append(f"the header has two numbers of points, {legacy} and {count}; the second is used")
     return count
+
+
+def _check_returns(block: bytes, minor: int, n_points: int, notes: list[str]) -> None:
+    """Note where the header counts more points by return than in all: some may be left unread."""
+    by_return = struct.unpack_from("<5I", block, RETURNS)
+    if minor >= 4 and not any(by_return):
+        by_return = struct.unpack_from("<15Q", block, LONG_RETURNS)
+    if sum(by_return) > n_points:
+        notes.append(
+            f"the header counts {sum(by_return)} points by return and {n_points} in all; "
+            f"the first {n_points} are read"
+        )
 
 
 def _check_scaling(name: str, scales: tuple[float, ...], offsets: tuple[float, ...]) -> None:

@@ -172,3 +172,25 @@ def test_a_header_alone_tells_where_things_lie():
     assert [r.user_id for r in layout.vlrs] == ["a", "b"]
     assert layout.vlrs_end == 227 + 57 + 54
     assert (layout.n_points, layout.record_length, layout.point_format) == (60, 28, 1)
+
+
+@pytest.mark.parametrize("minor", [2, 4])
+def test_points_that_the_header_counts_by_return_only_are_told_of(tmp_path, minor):
+    """A damaged number of points left 44 of 300 unread without a word."""
+    content = bytearray(las_bytes(minor, 3))
+    at, form = (247, "<Q") if minor == 4 else (COUNT, "<I")
+    n_points = struct.unpack_from(form, content, at)[0]
+    struct.pack_into(form, content, at, n_points - 5)
+    if minor == 4:
+        struct.pack_into("<I", content, COUNT, 0)
+        struct.pack_into("<5I", content, 111, 0, 0, 0, 0, 0)
+        struct.pack_into("<15Q", content, 255, n_points, *[0] * 14)
+    else:
+        struct.pack_into("<5I", content, 111, n_points, 0, 0, 0, 0)
+    path = tmp_path / "a.las"
+    path.write_bytes(content)
+    words = f"counts {n_points} points by return and {n_points - 5} in all"
+    with pytest.warns(PointCloudWarning) as told:
+        cloud, _ = read_cloud(path)
+    assert any(words in str(warning.message) for warning in told)
+    assert cloud.n_points == n_points - 5
