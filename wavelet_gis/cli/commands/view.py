@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from wavelet_gis.cli.commands._options import add_overwrite_argument
+from wavelet_gis.cli.commands._pages import add_page_arguments, write_page
 from wavelet_gis.cli.console import Console
 
 ORDER = 95
@@ -13,8 +14,7 @@ HELP = "Write the levels of a pyramid as one HTML page with a slider, which need
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("file", help="a pyramid file")
-    parser.add_argument("output", help="ending in .html or .htm")
+    add_page_arguments(parser)
     parser.add_argument(
         "--max-vertices",
         type=int,
@@ -26,22 +26,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    from wavelet_gis.io.atomic import check_output, new_file
-    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
-    from wavelet_gis.io.read_back import write_text
     from wavelet_gis.report.level_viewer import level_viewer
 
-    check_output(
-        arguments.output,
-        overwrite=arguments.overwrite,
-        suffixes=(".html", ".htm"),
-        inputs=(arguments.file,),
+    figures = write_page(
+        arguments,
+        console,
+        "levels",
+        lambda geo, progress: level_viewer(geo, arguments.max_vertices, progress),
     )
-    geo = read_pyramid(arguments.file)
-    with console.progress("levels") as progress:
-        page, figures = level_viewer(geo, arguments.max_vertices, progress)
-    with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
-        write_text(scratch, page)
     finest = figures["shown"][-1]
     console.say(
         f"{len(figures['shown'])} of {figures['n_levels'] + 1} levels, up to "
