@@ -179,8 +179,10 @@ def _why_refused(line: str) -> str:
 def _n_bands(path: Path) -> int:
     import rasterio
 
-    with rasterio.Env(), rasterio.open(path) as dataset:
-        return int(dataset.count)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what is to be said of the file, the program says
+        with rasterio.Env(), rasterio.open(path) as dataset:
+            return int(dataset.count)
 
 
 def _comparison(path: Path, back: Path) -> str:

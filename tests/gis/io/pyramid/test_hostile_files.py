@@ -514,7 +514,7 @@ def test_records_that_are_none(damaged, sound, change):
         read_pyramid(damaged((statement, json.dumps(record))))
 
 
-@pytest.mark.parametrize("sound", ["cloud"], indirect=True)
+@pytest.mark.parametrize("sound", ["cloud of format 1"], indirect=True)
 @pytest.mark.parametrize(
     "faces",
     [
