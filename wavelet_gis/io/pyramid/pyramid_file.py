@@ -534,7 +534,7 @@ def _from_lists(contents: _Contents, arrays: StoredArrays) -> Pyramid:
     coarse = arrays.get("coarse", "<f8", 2)
     if not len(coarse):
         raise PyramidError("the coarsest level has no vertices; the file is damaged.")
-    return Pyramid.from_parts(
+    pyramid = Pyramid.from_parts(
         faces=arrays.get("faces", "<i4", 2),
         horizontal=arrays.get("horizontal", "<f8", 2) if SIGNALS[signal].keeps_plan else None,
         coarse=coarse,
@@ -546,6 +546,9 @@ def _from_lists(contents: _Contents, arrays: StoredArrays) -> Pyramid:
         parameters=dict(described.fields("parameters")),
         stop=_stop_from(described),
     )
+    n_vertices = pyramid.n_vertices(pyramid.n_levels)
+    build_connectivity(pyramid.faces.astype(np.int32), n_vertices)  # refuses what is no manifold
+    return pyramid
 
 
 def _locked_from(described: Fields, arrays: StoredArrays) -> NDArray[np.bool_] | None:
