@@ -25,12 +25,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Layers in the pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
     <source>Measuring the errors of every level</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
-    <source>One GeoPackage with everything: the arrays from which every level is rebuilt exactly, and the coarse TIN and the details of each level as styled layers.</source>
+    <source>One GeoPackage with everything: the arrays from which every level is rebuilt exactly, and the coarse TIN and details as styled layers.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -41,6 +46,11 @@
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
     <source>The triangles of the coarsest level, with elevation and slope.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Which layers the pyramid file has, which is complete without them: the coarse TIN and the details of the coarser levels, up to 100,000 features (auto), those of all levels, the coarse TIN only, or none.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1240,12 +1250,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>Synthesises the finest level of a pyramid and gives back what it was made from: the DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with exactly its integers, in its order, or the TIN. A filtered pyramid gives the filtered terrain. Choose the output that fits the pyramid; the others stay empty.</source>
+    <source>Restoring the input</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>Synthesising the finest level</source>
+    <source>Synthesises the finest level of a pyramid and gives back what it was made from: the DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with exactly its integers, in its order, or the TIN. A filtered pyramid gives the filtered terrain. Choose the output that fits the pyramid; the others stay empty.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -25,13 +25,18 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Layers in the pyramid</source>
+    <translation>Layer in der Pyramide</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
     <source>Measuring the errors of every level</source>
     <translation>Messen der Fehler aller Stufen</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
-    <source>One GeoPackage with everything: the arrays from which every level is rebuilt exactly, and the coarse TIN and the details of each level as styled layers.</source>
-    <translation>Ein GeoPackage mit allem: die Felder, aus denen jede Stufe genau wiederhergestellt wird, dazu das grobe TIN und die Details jeder Stufe als Layer mit Stil.</translation>
+    <source>One GeoPackage with everything: the arrays from which every level is rebuilt exactly, and the coarse TIN and details as styled layers.</source>
+    <translation>Ein GeoPackage mit allem: die Felder, aus denen jede Stufe exakt wiederkommt, und das grobe TIN und die Details als gestaltete Layer.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
@@ -42,6 +47,11 @@
     <location filename="../../plugin/algorithms/_analysis.py"/>
     <source>The triangles of the coarsest level, with elevation and slope.</source>
     <translation>Die Dreiecke der gröbsten Stufe, mit Höhe und Neigung.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_analysis.py"/>
+    <source>Which layers the pyramid file has, which is complete without them: the coarse TIN and the details of the coarser levels, up to 100,000 features (auto), those of all levels, the coarse TIN only, or none.</source>
+    <translation>Welche Layer die Pyramidendatei hat, die ohne sie vollständig ist: das grobe TIN und die Details der gröberen Stufen, bis 100.000 Objekte (auto), die aller Stufen, nur das grobe TIN, oder keine.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
@@ -1240,13 +1250,13 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>Synthesises the finest level of a pyramid and gives back what it was made from: the DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with exactly its integers, in its order, or the TIN. A filtered pyramid gives the filtered terrain. Choose the output that fits the pyramid; the others stay empty.</source>
-    <translation>Setzt die feinste Stufe einer Pyramide zusammen und gibt zurück, woraus sie gemacht ist: das DGM Bit für Bit (dieselben Zahlen, Datentyp, NoData, Gitter und KBS), die Punktwolke mit genau ihren Ganzzahlen, in ihrer Reihenfolge, oder das TIN. Eine gefilterte Pyramide gibt das gefilterte Gelände. Wählen Sie die Ausgabe, die zur Pyramide passt; die anderen bleiben leer.</translation>
+    <source>Restoring the input</source>
+    <translation>Die Eingabe wird wiederhergestellt</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>Synthesising the finest level</source>
-    <translation>Zusammensetzen der feinsten Stufe</translation>
+    <source>Synthesises the finest level of a pyramid and gives back what it was made from: the DEM bit for bit (same numbers, data type, nodata, grid and CRS), the point cloud with exactly its integers, in its order, or the TIN. A filtered pyramid gives the filtered terrain. Choose the output that fits the pyramid; the others stay empty.</source>
+    <translation>Setzt die feinste Stufe einer Pyramide zusammen und gibt zurück, woraus sie gemacht ist: das DGM Bit für Bit (dieselben Zahlen, Datentyp, NoData, Gitter und KBS), die Punktwolke mit genau ihren Ganzzahlen, in ihrer Reihenfolge, oder das TIN. Eine gefilterte Pyramide gibt das gefilterte Gelände. Wählen Sie die Ausgabe, die zur Pyramide passt; die anderen bleiben leer.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
