@@ -118,7 +118,8 @@ def row(path: Path, data: Path) -> tuple[str, str, str]:
         return name, "not an input", BESIDE[path.suffix]
     if path.suffix == ".json" and path.name != "ept.json":
         return name, "not an input", "an index that its set of tiles refers to"
-    with tempfile.TemporaryDirectory() as scratch:
+    with tempfile.TemporaryDirectory() as scratch, warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # what is to be said of the file, the program says
         happened, reasons = _tried(path, Path(scratch))
     return name, "; ".join(happened), "; ".join(dict.fromkeys(reasons))
 
@@ -157,7 +158,7 @@ def _run(*arguments: Any) -> tuple[int, str, str]:
 
     out, err = io.StringIO(), io.StringIO()
     both = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
-    with warnings.catch_warnings(), both[0], both[1]:
+    with both[0], both[1]:
         code = main([str(argument) for argument in arguments])
     lines = [line for line in err.getvalue().splitlines() if " error: " in line]
     return code, out.getvalue(), lines[-1] if lines else ""
@@ -179,10 +180,8 @@ def _why_refused(line: str) -> str:
 def _n_bands(path: Path) -> int:
     import rasterio
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # what is to be said of the file, the program says
-        with rasterio.Env(), rasterio.open(path) as dataset:
-            return int(dataset.count)
+    with rasterio.Env(), rasterio.open(path) as dataset:
+        return int(dataset.count)
 
 
 def _comparison(path: Path, back: Path) -> str:
