@@ -271,9 +271,9 @@ def without_outliers(
     n = mesh.n_vertices
     if n == 0 or not len(mesh.faces):
         return np.empty(0, np.int64), values
-    row, column, _ = rings(mesh)
-    keeps = row != column
-    row, column = row[keeps], column[keeps]
+    around = rings(mesh)
+    keeps = around.rows != around.indices
+    row, column = around.rows[keeps], around.indices[keeps]
     deviation = _floored(estimate_noise(mesh, values), quantum) if sigma is None else sigma
     # At an outline all neighbours may lie downhill.
     is_inside = np.bincount(row, minlength=n) == np.bincount(mesh.faces.ravel(), minlength=n)
