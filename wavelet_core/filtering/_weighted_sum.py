@@ -234,8 +234,7 @@ class WeightedSum:
         """Yield where the weights of each part are, and its ``(n_vertices, k, n_elements)``."""
         first = self._of_pyramids.shape[1]
         for scale, details in enumerate(bank.details(columns)):
-            for part in range(bank.n_parts):
-                one = details[:, :, part]
+            for part, one in enumerate(details):
                 noise = self._sigma * bank.noise[scale][:, part].astype(np.float64)
                 energy = bank.local_energy((one / noise[:, None]) ** 2, VERTEX_ROUNDS + scale)
                 end = first + OF_VERTICES.n_elements

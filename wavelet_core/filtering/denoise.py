@@ -19,7 +19,7 @@ from ._bounded import ROWS_AT_ONCE
 from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
 from .noise import check_sigma, noise_columns, noise_gains
-from .noise_model import Noise, RangeOption, noise_of
+from .noise_model import OUTLIER_PASSES, ROWS_OF_RANKS, Noise, RangeOption, noise_of
 from .undecimated import UndecimatedBank
 
 #: Scales of the details of all vertices for a level of a pyramid: they reach as far.
@@ -27,8 +27,8 @@ SCALES_PER_LEVEL = 0.5
 #: A pyramid for denoising stops where its mesh would be smaller than this.
 LEAST_VERTICES = 100
 #: For the progress: the shares of what goes before the pyramids and of the filters of all vertices,
-#: and the time that the details of all vertices take, in pyramids.
-BEFORE_PYRAMIDS, OF_BANK, TIME_OF_VERTICES = 0.05, 0.08, 2
+#: the time that the details of all vertices take, in pyramids, and that of a pyramid's analysis.
+BEFORE_PYRAMIDS, OF_BANK, TIME_OF_VERTICES, OF_ANALYSIS = 0.05, 0.08, 1.5, 0.85
 
 
 def denoise(
@@ -140,7 +140,8 @@ def denoise(
     chosen = {name: channel_index(names, name) for name in channels}
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
     meter = Meter(progress, "denoising was cancelled; nothing was kept.")
-    meter.begin(0.0, BEFORE_PYRAMIDS, 1)
+    n_steps = OUTLIER_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
+    meter.begin(0.0, BEFORE_PYRAMIDS, n_steps * len(chosen))
     noises = {}
     for name, c in chosen.items():
         noises[name], columns[:, c] = noise_of(
@@ -205,14 +206,17 @@ class _Decompositions:
         """Fit the weights of every column and sum."""
         span = (1.0 - BEFORE_PYRAMIDS - OF_BANK) / (self._n_pyramids + TIME_OF_VERTICES)
         for k in range(self._n_pyramids):
-            start = BEFORE_PYRAMIDS + k * span
-            self._meter.begin(start, start + span, (4 + 9 * len(weighted)) * self._levels)
-            self._take_in(self._seed * 1_000_003 + k, weighted)
+            start, stop = BEFORE_PYRAMIDS + k * span, BEFORE_PYRAMIDS + (k + 1) * span
+            self._meter.begin(start, start + OF_ANALYSIS * span, 1)
+            pyramid = self._analysed(self._seed * 1_000_003 + k)
+            n_steps = (4 + 9 * len(weighted)) * self._levels
+            self._meter.begin(start + OF_ANALYSIS * span, stop, n_steps)
+            self._take_in(Transform.from_pyramid(pyramid, self._meter.tick), weighted)
+            del pyramid
         self._finish(weighted, 1.0 - OF_BANK - TIME_OF_VERTICES * span)
 
-    def _take_in(self, seed: int, weighted: Sequence[WeightedSum]) -> None:
+    def _take_in(self, transform: Transform, weighted: Sequence[WeightedSum]) -> None:
         """Fit one pyramid to every column."""
-        transform = Transform.from_pyramid(self._analysed(seed), self._meter.tick)
         for one in weighted:
             one.fit(transform, self._gains(transform, one.noise))
 

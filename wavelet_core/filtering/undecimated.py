@@ -134,11 +134,13 @@ class UndecimatedBank:
         """Into how many parts the details of a scale are split."""
         return len(self.curvatures) + 1
 
-    def details(self, columns: FloatArray) -> Iterator[FloatArray]:
-        """Yield the details of each scale from the finest, ``(n_vertices, k, n_parts)``."""
+    def details(self, columns: FloatArray) -> Iterator[list[FloatArray]]:
+        """Yield the details of each scale from the finest: its parts, each ``(n_vertices, k)``."""
         for scale, strength in enumerate(self.strengths):
             details, along, columns = self._split(columns, scale)
-            yield _parts(details, along, strength)
+            parts = list(_parts_of(details, along, strength))
+            del details, along
+            yield parts
 
     def local_energy(self, energy: FloatArray, rounds: int) -> FloatArray:
         """Return values ``(n_vertices, ...)`` averaged over their neighbourhood."""
@@ -184,14 +186,10 @@ class UndecimatedBank:
         return replace(self, strengths=strengths, noise=tuple(deviations))
 
 
-def _parts(details: FloatArray, along: list[FloatArray], strength: float) -> FloatArray:
-    """Return the details along each direction and the rest, ``(n_vertices, k, n_parts)``."""
-    return np.stack(list(_parts_of(details, along, strength)), axis=2)
-
-
 def _parts_of(
     details: FloatArray, along: list[FloatArray], strength: float
 ) -> Iterator[FloatArray]:
+    """Yield the details along each direction, and the rest."""
     rest = details
     if along:
         together = strength * along[0]
