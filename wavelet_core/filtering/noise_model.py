@@ -37,6 +37,8 @@ FILL_ROUNDS = 20
 VERTICES_OF_BLOCK, BLUR_OF_BLOCKS, DEVIATION_OF_BLOCK = 25, 0.5, 0.9
 #: Correlation lengths that are tried, in mean distances of neighbours.
 TRIED_RANGES = (0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0)
+#: Share of the vertices, the flatter ones, that tell how the finest details grow with relief.
+SHARE_SLOPED = 0.6
 #: Scales by which they are told, and the share of the vertices, the flattest, that tell.
 N_TOLD, SHARE_TOLD = 3, 0.5
 #: Noise of one deviation is the same in the flattest places, this share of the vertices, as in the
@@ -213,10 +215,9 @@ def noise_of(
             half = _deviations(bank, values, alike[:, 0])[0]
             noise = replace(noise, sigma=_floored(float(np.median(half)), quantum))
     elif not is_told and not local_noise:
-        white = noise_columns(mesh.n_vertices, seed)[:, 0]
-        half, flattest = _deviations(bank, values, white)
-        if noise.is_rough or flattest[0] < STEADY_WHITE * half[0]:
-            deviation = min(float(flattest[0]), noise.sigma)
+        deviation = _where_relief_ends(bank, values, noise_columns(mesh.n_vertices, seed)[:, :4])
+        if noise.is_rough or deviation < STEADY_WHITE * noise.sigma:
+            deviation = min(deviation, noise.sigma)
             noise = replace(noise, sigma=_floored(deviation, quantum), is_rough=True)
     if local_noise:
         local = _map_of_noise(bank, plan, values, noise, seed)
@@ -401,6 +402,37 @@ def _told_deviations(
     flat = energy <= np.quantile(energy, share)
     told = np.array([np.median(np.abs(one[flat])) / NORMAL_MAD for one in details[:N_TOLD]])
     return np.maximum(told, 1e-300)
+
+
+def _where_relief_ends(bank: UndecimatedBank, values: FloatArray, white: FloatArray) -> float:
+    """Return the deviation of white noise that the finest details tend to as relief goes to zero.
+
+    The squares of the finest details, in shares of the vertices by their relief at a coarser scale,
+    grow about as the root of that energy, on ten DEMs: as in relief that is rougher the finer one
+    looks. Their line, fitted to the flatter shares, is followed down from the flattest one; where
+    that is flat, there is nowhere to go.
+    """
+    both = np.column_stack([values - values.mean(), white])
+    finest, coarser = np.empty(0), np.empty(0)
+    for scale, parts in enumerate(bank.details(both)):
+        if scale in (0, N_TOLD):
+            together = sum(parts[1:], start=parts[0])
+            finest, coarser = (np.abs(together), coarser) if scale == 0 else (finest, together)
+    energy = bank.local_energy(coarser[:, 0] ** 2, 8)
+    order = np.argsort(energy, kind="stable")
+    shares = np.array_split(order, round(1 / SHARE_FLATTEST))[
+        : round(SHARE_SLOPED / SHARE_FLATTEST)
+    ]
+    relief = np.array([np.sqrt(energy[share].mean()) for share in shares])
+    squares = np.array(
+        [np.median(finest[share, 0]) ** 2 / np.median(finest[share, 1:]) ** 2 for share in shares]
+    )
+    weights = 1.0 / np.maximum(squares, 1e-6 * max(float(squares.max()), 1e-300)) ** 2
+    weights /= weights.sum()
+    apart = relief - np.sum(weights * relief)
+    spread = np.sum(weights * apart**2)
+    slope = max(float(np.sum(weights * apart * squares) / spread), 0.0) if spread > 0 else 0.0
+    return float(np.sqrt(max(squares[0] - slope * relief[0], squares[0] / 4.0)))
 
 
 def _told_range(bank: UndecimatedBank, plan: FloatArray, values: FloatArray, seed: int) -> float:
