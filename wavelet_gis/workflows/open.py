@@ -40,7 +40,14 @@ from wavelet_gis.workflows.input_options import (
     require_meaning,
 )
 
-__all__ = ["load", "open_data", "open_input", "open_terrain", "origin_kind"]
+__all__ = [
+    "load",
+    "open_data",
+    "open_input",
+    "open_pyramid_or_input",
+    "open_terrain",
+    "origin_kind",
+]
 
 #: Beyond it a plane is told to be untrue: the same error that a frame for degrees may have.
 LARGEST_SCALE_ERROR = MAX_DISTORTION
@@ -289,6 +296,45 @@ def open_input(
             terrain = open_terrain(path, **options)
         _tell_of_scale(terrain)
     return _with_shapes(terrain.with_notes(notes), shapes)
+
+
+def open_pyramid_or_input(
+    path: str | os.PathLike[str], *, level: int | None = None, **options: Any
+) -> Terrain | Analysis:
+    """Return what a file holds, for uses that take a pyramid as well as any other terrain.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    level : int, optional
+        Of a pyramid: the finest that is wanted; see `load`.
+    **options
+        See `open_data`.
+
+    Raises
+    ------
+    InputFileError
+        Options that this kind of input does not have, or what the readers refuse.
+    """
+    is_pyramid = (
+        suffix_of(path) == PYRAMID_SUFFIX and not options.get("layer") and _holds_pyramid(path)
+    )
+    if not is_pyramid:
+        if level is not None:
+            raise InputFileError(
+                "{path}: this is no pyramid, and {0} is for one; leave it out.", "level", path=path
+            )
+        return open_input(path, **options)
+    require_meaning(path, PYRAMID, options)
+    for name in ("crs", "vertical_unit"):
+        if options.get(name):
+            raise InputFileError(
+                "{path}: a pyramid knows its own, and {0} is for other input; leave it out.",
+                name,
+                path=path,
+            )
+    return load(path, level=level)
 
 
 def _with_shapes(terrain: Terrain, shapes: dict[str, Any]) -> Terrain:

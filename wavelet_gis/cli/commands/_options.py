@@ -30,6 +30,7 @@ __all__ = [
     "line_options",
     "names",
     "open_given",
+    "reading_options",
     "surface_formats",
     "surface_options",
     "surface_suffixes",
@@ -40,6 +41,27 @@ __all__ = [
 INPUTS = (
     "a raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or a table (.csv, "
     ".xyz); a TIN as a layer of triangles"
+)
+
+
+#: What tells how an input is read.
+_READING = (
+    "layer",
+    "z_field",
+    "band",
+    "attributes",
+    "classes",
+    "carry",
+    "class_channels",
+    "crs",
+    "vertical_unit",
+    "nodata",
+    "offline",
+    "keep_noise",
+    "keep_withheld",
+    "duplicates",
+    "max_edge",
+    "concave",
 )
 
 
@@ -173,26 +195,12 @@ def open_given(arguments: argparse.Namespace) -> Terrain:
     """Return the terrain that the input arguments name."""
     from wavelet_gis.workflows.open import open_input
 
-    return open_input(
-        arguments.input,
-        layer=arguments.layer,
-        z_field=arguments.z_field,
-        band=arguments.band,
-        attributes=arguments.attributes,
-        classes=arguments.classes,
-        carry=arguments.carry,
-        class_channels=arguments.class_channels,
-        crs=arguments.crs,
-        vertical_unit=arguments.vertical_unit,
-        nodata=arguments.nodata,
-        offline=arguments.offline,
-        keep_noise=arguments.keep_noise,
-        keep_withheld=arguments.keep_withheld,
-        duplicates=arguments.duplicates,
-        max_edge=arguments.max_edge,
-        concave=arguments.concave,
-        **line_options(arguments),
-    )
+    return open_input(arguments.input, **reading_options(arguments), **line_options(arguments))
+
+
+def reading_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return what `add_input_arguments` asks, by the names of `wavelet_gis.open`."""
+    return {name: getattr(arguments, name) for name in _READING}
 
 
 def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:
