@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "INPUTS",
     "add_input_arguments",
+    "add_inputs_argument",
     "add_line_arguments",
     "add_overwrite_argument",
     "add_surface_arguments",
@@ -42,6 +43,22 @@ INPUTS = (
     "a raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or a table (.csv, "
     ".xyz); a TIN as a layer of triangles"
 )
+
+
+#: What several files may be, for help.
+SEVERAL = "; or several rasters, or LAS files, or a folder of them, that are parts of one"
+
+
+def add_inputs_argument(parser: argparse.ArgumentParser, others: str = "") -> None:
+    """Add one input or several.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+    others : str
+        What the command takes besides, for help.
+    """
+    parser.add_argument("input", nargs="+", help=f"{others}{INPUTS}{SEVERAL}")
 
 
 #: What tells how an input is read.
@@ -188,7 +205,9 @@ def line_options(arguments: argparse.Namespace) -> dict[str, Any]:
 def input_files(arguments: argparse.Namespace) -> tuple[str, ...]:
     """Return every file that is read, none of which an output may replace."""
     lines = (arguments.breaklines, arguments.clip, arguments.fixed_points)
-    return (arguments.input, *(path for path in lines if path))
+    from wavelet_gis.io.names import files_of
+
+    return (*files_of(arguments.input), *(path for path in lines if path))
 
 
 def open_given(arguments: argparse.Namespace) -> Terrain:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 
 from wavelet_gis.cli.commands._options import (
-    INPUTS,
     add_input_arguments,
+    add_inputs_argument,
     add_overwrite_argument,
     length,
     reading_options,
@@ -19,7 +19,7 @@ HELP = "Write a terrain, or a pyramid, as quantized-mesh tiles for globes such a
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("input", help=f"a pyramid file, or {INPUTS}")
+    add_inputs_argument(parser, "a pyramid file; ")
     parser.add_argument("output", help="a folder, with layer.json and the tiles of all zooms")
     parser.add_argument("--level", type=int, metavar="K", help="of a pyramid, else its finest")
     parser.add_argument(
