@@ -215,10 +215,13 @@ def noise_of(
             half = _deviations(bank, values, alike[:, 0])[0]
             noise = replace(noise, sigma=_floored(float(np.median(half)), quantum))
     elif not is_told and not local_noise:
-        deviation = _where_relief_ends(bank, values, noise_columns(mesh.n_vertices, seed)[:, :4])
-        if noise.is_rough or deviation < STEADY_WHITE * noise.sigma:
-            deviation = min(deviation, noise.sigma)
-            noise = replace(noise, sigma=_floored(deviation, quantum), is_rough=True)
+        white = noise_columns(mesh.n_vertices, seed)[:, :4]
+        half, flattest = _deviations(bank, values, white[:, 0])
+        is_rough = noise.is_rough or bool(flattest[0] < STEADY_WHITE * half[0])
+        ending = _where_relief_ends(bank, values, white)
+        if is_rough or ending < STEADY_WHITE * noise.sigma:
+            deviation = _floored(min(ending, noise.sigma), quantum)
+            noise = replace(noise, sigma=deviation, is_rough=is_rough)
     if local_noise:
         local = _map_of_noise(bank, plan, values, noise, seed)
         if local is not None:
