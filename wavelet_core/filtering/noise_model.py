@@ -39,6 +39,8 @@ VERTICES_OF_BLOCK, BLUR_OF_BLOCKS, DEVIATION_OF_BLOCK = 25, 0.5, 0.9
 TRIED_RANGES = (0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0)
 #: Share of the vertices, the flatter ones, that tell how the finest details grow with relief.
 SHARE_SLOPED = 0.6
+#: Powers of the coarser energy with which they may do so.
+POWERS_OF_RELIEF = (0.5, 0.75, 1.0)
 #: Scales by which they are told, and the share of the vertices, the flattest, that tell.
 N_TOLD, SHARE_TOLD = 3, 0.5
 #: Noise of one deviation is the same in the flattest places, this share of the vertices, as in the
@@ -411,8 +413,9 @@ def _where_relief_ends(bank: UndecimatedBank, values: FloatArray, white: FloatAr
     """Return the deviation of white noise that the finest details tend to as relief goes to zero.
 
     The squares of the finest details, in shares of the vertices by their relief at a coarser scale,
-    grow about as the root of that energy, on ten DEMs: as in relief that is rougher the finer one
-    looks. Their line, fitted to the flatter shares, is followed down from the flattest one; where
+    grow with a power of that energy: with the energy itself where the same relief is higher in one
+    place than in another, with its root where relief is the rougher the finer one looks. That of
+    a few powers which fits the flatter shares best is followed down from the flattest one; where
     that is flat, there is nowhere to go.
     """
     both = np.column_stack([values - values.mean(), white])
@@ -426,16 +429,23 @@ def _where_relief_ends(bank: UndecimatedBank, values: FloatArray, white: FloatAr
     shares = np.array_split(order, round(1 / SHARE_FLATTEST))[
         : round(SHARE_SLOPED / SHARE_FLATTEST)
     ]
-    relief = np.array([np.sqrt(energy[share].mean()) for share in shares])
+    coarse = np.array([energy[share].mean() for share in shares])
     squares = np.array(
         [np.median(finest[share, 0]) ** 2 / np.median(finest[share, 1:]) ** 2 for share in shares]
     )
     weights = 1.0 / np.maximum(squares, 1e-6 * max(float(squares.max()), 1e-300)) ** 2
     weights /= weights.sum()
-    apart = relief - np.sum(weights * relief)
-    spread = np.sum(weights * apart**2)
-    slope = max(float(np.sum(weights * apart * squares) / spread), 0.0) if spread > 0 else 0.0
-    return float(np.sqrt(max(squares[0] - slope * relief[0], squares[0] / 4.0)))
+    rest = squares - np.sum(weights * squares)
+    least, found = np.inf, float(squares[0])
+    for power in POWERS_OF_RELIEF:
+        relief = (coarse / max(float(coarse.mean()), 1e-300)) ** power
+        apart = relief - np.sum(weights * relief)
+        spread = float(np.sum(weights * apart**2))
+        slope = max(float(np.sum(weights * apart * rest)) / spread, 0.0) if spread > 0 else 0.0
+        misfit = float(np.sum(weights * (rest - slope * apart) ** 2))
+        if misfit < least:
+            least, found = misfit, float(squares[0] - slope * relief[0])
+    return float(np.sqrt(max(found, squares[0] / 4.0)))
 
 
 def _told_range(bank: UndecimatedBank, plan: FloatArray, values: FloatArray, seed: int) -> float:
