@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -43,6 +44,7 @@ from .._kernels.surface_points import (
 from .._validate import FloatArray, frozen
 from ._level_state import FaceState, VertexState
 from .outline import tolerant_outline
+from .questions import Collapses, Sight
 
 #: The costs of a level are limited by those of the cheapest vertices that it may take: by the
 #: highest cost of this part of them, one sixteenth. From a half to one sixty-fourth the RMSE
@@ -59,6 +61,10 @@ HEIGHT_STEP = 2.0**-46
 PACKED_SHARE = 0.7
 #: What the kernels call the norms of :data:`wavelet_core.partition.registry.NORMS`.
 _NORM_CODES = {"rms": LEAST_SQUARES, "max": LARGEST}
+
+
+#: Looks at the collapses of a step, and at what the level was before.
+Witness = Callable[[Sight, Collapses], None]
 
 
 class CollapseStep(NamedTuple):
@@ -189,6 +195,36 @@ class SurfaceLevel:
     def heights(self) -> FloatArray:
         """Present heights and weighted attributes, one row a vertex of the level."""
         return self._surface.z[self._vertices.lives] + self._z_origin
+
+    @property
+    def local_heights(self) -> FloatArray:
+        """Heights and weighted attributes of the level's vertices, from their local origin."""
+        return self._surface.z[self._vertices.lives]
+
+    @property
+    def integrals(self) -> FloatArray:
+        """Integrals of the level's scaling functions."""
+        return self._vertices.integrals[self._vertices.lives]
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """Faces of the level, in places among its vertices."""
+        position = np.cumsum(self._vertices.lives, dtype=np.int32) - np.int32(1)
+        return position[self._mesh.origin.reshape(-1, 3)[self._faces.lives]]
+
+    def sight(self) -> Sight:
+        """Return what is known of the level before its step, which changes some of its arrays."""
+        vertices = self._vertices
+        return Sight(
+            self._mesh,
+            self._surface,
+            self._outline,
+            vertices.stays,
+            vertices.locked,
+            vertices.key,
+            np.flatnonzero(vertices.lives).astype(np.int32),
+            self._height_step,
+        )
 
     def costs(self, slots: NDArray[np.int32]) -> FloatArray:
         """Return the costs of vertices, as last ranked."""
@@ -327,9 +363,16 @@ class SurfaceLevel:
 
     # -- one step --------------------------------------------------------------------------------
 
-    def remove(self, odd: NDArray[np.int32]) -> CollapseStep:
-        """Collapse the odd vertices, predict, update; return the step, details as weighted."""
+    def remove(self, odd: NDArray[np.int32], witness: Witness | None = None) -> CollapseStep:
+        """Collapse the odd vertices, predict, update; return the step, details as weighted.
+
+        A witness is told what the level looked like before, and which vertices went onto which.
+        """
+        sight = None if witness is None else self.sight().kept()
         odd, indptr, ring, ring_faces = self._collapse(odd)
+        if witness is not None and sight is not None:
+            witness(sight, Collapses(odd, ring[indptr[:-1]]))
+            del sight
         corners, weights, details = self._hand_over(odd, indptr, ring, ring_faces)
         vertices = self._vertices
         even_position = np.cumsum(vertices.lives, dtype=np.int32) - np.int32(1)
