@@ -21,7 +21,8 @@ import numpy as np
 from wavelet_core import TriangleMesh, analyse
 from wavelet_core.features.signature import Signature, plain_features, scale_features
 from wavelet_core.mesh.triangulation import merge_duplicates
-from wavelet_gis.workflows.learning.classify import merge_labels, spatial_folds, validate_classes
+from wavelet_gis.workflows.learning.classification import spatial_folds, validate_classes
+from wavelet_gis.workflows.learning.labels import merge_labels
 
 ATTRIBUTES = ("intensity", "return_number", "number_of_returns")
 GROUND = 2

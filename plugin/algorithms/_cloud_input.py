@@ -31,7 +31,7 @@ from ..ui.translation import tr
 
 if TYPE_CHECKING:
     from wavelet_gis.crs.frame import Georeference
-    from wavelet_gis.model.cloud import PointCloud
+    from wavelet_gis.model.points.cloud import PointCloud
     from wavelet_gis.model.terrain import Terrain
     from wavelet_gis.workflows.options import WaveletOptions
 
@@ -232,7 +232,7 @@ class CloudInput(TerrainWaveletsAlgorithm):
     def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:
         """Return the weights of the attributes."""
         from wavelet_gis.io.las import ALIASES
-        from wavelet_gis.model.cloud import PointCloud
+        from wavelet_gis.model.points.cloud import PointCloud
 
         assert isinstance(terrain.original, PointCloud)
         names_of_dimension: dict[str, list[str]] = {}

@@ -31,7 +31,7 @@ def duplicate_rules() -> tuple[str, ...]:
     """Return the rules for points at one place, the default first."""
     if dependencies.missing(dependencies.ALWAYS):
         return (DEFAULT,)
-    from wavelet_gis.model.cloud_aside import DUPLICATE_RULES
+    from wavelet_gis.model.points.aside import DUPLICATE_RULES
 
     return tuple(DUPLICATE_RULES)
 
@@ -40,7 +40,7 @@ def clusterings() -> tuple[str, ...]:
     """Return the methods of clustering, the default first."""
     if dependencies.missing(dependencies.ALWAYS):
         return (DEFAULT,)
-    from wavelet_gis.workflows.learning.classify import CLUSTERINGS
+    from wavelet_gis.workflows.learning.clustering import CLUSTERINGS
 
     return tuple(CLUSTERINGS)
 

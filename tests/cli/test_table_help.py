@@ -8,8 +8,8 @@ import pytest
 import wavelet_core
 from wavelet_core._table import Table
 from wavelet_gis.cli.main import argument_parser
-from wavelet_gis.model.cloud_aside import DUPLICATE_RULES
-from wavelet_gis.workflows.learning.classify import CLUSTERINGS
+from wavelet_gis.model.points.aside import DUPLICATE_RULES
+from wavelet_gis.workflows.learning.clustering import CLUSTERINGS
 
 TABLES = {
     "--partition": wavelet_core.PARTITIONS,

@@ -11,7 +11,7 @@ from wavelet_gis.io.geopackage import (
     open_for_writing,
     register_attributes_table,
 )
-from wavelet_gis.io.pyramid import pyramid_file
+from wavelet_gis.io.pyramid import metadata_tables, pyramid_parts
 from wavelet_gis.io.pyramid.array_codec import encode_array, header_of
 from wavelet_gis.model.exact_restore import exact_column
 
@@ -20,19 +20,19 @@ def write_format_one(path, geo):
     """Write a pyramid with lists of its steps, and with what rounding loses."""
     geo = replace(geo, origin=_with_ledger(geo))
     source, arrays = geo.origin.to_parts()
-    arrays |= pyramid_file._listed(geo.pyramid)
+    arrays |= pyramid_parts.listed_arrays(geo.pyramid)
     if geo.pyramid.locked is not None:
         arrays["locked"] = geo.pyramid.locked
-    metadata, _ = pyramid_file._to_parts(geo)
+    metadata, _ = pyramid_parts.pyramid_to_parts(geo)
     metadata["source"] = source
     metadata["format"]["version"] = 1
     metadata.pop("record", None)
     create_geopackage(path)
     with open_for_writing(path) as connection:
-        connection.executescript(pyramid_file._SCHEMA)
-        for table, description in pyramid_file._TABLES.items():
+        connection.executescript(metadata_tables.SCHEMA)
+        for table, description in metadata_tables.TABLES.items():
             register_attributes_table(connection, table, description)
-        pyramid_file._write_levels(connection, geo)
+        metadata_tables.write_level_rows(connection, geo)
         for name, array in arrays.items():
             _write_array(connection, name, array)
         connection.executemany(

@@ -36,14 +36,14 @@ from tools.pyramid_surgery import STRIP, opened, operate, reseal  # noqa: E402
 
 from wavelet_core.errors import WaveletError  # noqa: E402
 from wavelet_gis.io.pyramid.array_codec import encode_array, header_of  # noqa: E402
+from wavelet_gis.io.pyramid.metadata_tables import require_tables  # noqa: E402
 from wavelet_gis.io.pyramid.pyramid_file import (  # noqa: E402
-    _require_tables,
-    _to_parts,
     read_input,
     read_pyramid,
     read_summary,
     write_pyramid,
 )
+from wavelet_gis.io.pyramid.pyramid_parts import pyramid_to_parts  # noqa: E402
 
 NUMBERS = (
     "0", "-1", "1", "2147483647", "2147483648", "-2147483649", "4294967296", "9223372036854775807",
@@ -134,7 +134,7 @@ def _json(path, rng):
         (("wavelet_metadata", "name", "value"),) * 3 + (("wavelet_arrays", "name", "shape"),)
     )
     with opened(path) as connection:
-        _require_tables(connection)
+        require_tables(connection)
         rows = connection.execute(f"SELECT {name}, {column} FROM {table}").fetchall()
     key, text = rng.choice(rows)
     value = json.loads(text)
@@ -175,7 +175,7 @@ def _parent(value, place):
 def _array(path, rng):
     """Change numbers of an array, or put another of some shape and type in its place."""
     with opened(path) as connection:
-        _require_tables(connection)
+        require_tables(connection)
         return _array_in(connection, rng)
 
 
@@ -276,7 +276,7 @@ def _schema(path, rng):
 
 def summary_of(geo):
     """Return a digest of all that a pyramid holds."""
-    metadata, arrays = _to_parts(geo)
+    metadata, arrays = pyramid_to_parts(geo)
     digest = hashlib.sha256(json.dumps(metadata, sort_keys=True, default=str).encode())
     for name, array in arrays.items():
         digest.update(f"{name} {array.shape} {array.dtype}".encode())

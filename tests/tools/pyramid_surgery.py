@@ -6,7 +6,7 @@ import sqlite3
 from contextlib import contextmanager
 
 from wavelet_core.errors import WaveletError
-from wavelet_gis.io.pyramid import pyramid_file
+from wavelet_gis.io.pyramid import metadata_tables
 from wavelet_gis.io.pyramid.array_codec import array_checksum, decode_array
 from wavelet_gis.io.pyramid.array_tables import read_entries
 
@@ -53,7 +53,7 @@ def reseal(path):
 
 def _reseal(connection):
     try:
-        pyramid_file._require_tables(connection)  # an endless view would keep us, too
+        metadata_tables.require_tables(connection)  # an endless view would keep us, too
         entries = read_entries(connection, with_checksums=True)
     except (WaveletError, sqlite3.Error):
         return
@@ -77,10 +77,10 @@ def _reseal(connection):
     if not all(isinstance(text, str) for item in texts.items() for text in item):
         return
     try:
-        levels = pyramid_file._read_levels(connection)
+        levels = metadata_tables.read_level_rows(connection)
     except WaveletError:
         return
-    checksums = pyramid_file._checksums(texts, levels, entries)
+    checksums = metadata_tables.checksums_of(texts, levels, entries)
     connection.execute(
         "UPDATE wavelet_metadata SET value = ? WHERE name = 'checksums'", (json.dumps(checksums),)
     )

@@ -17,12 +17,12 @@ from wavelet_gis.crs.frame import (
     working_frame,
 )
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
-from wavelet_gis.model.cloud import PointCloud, cloud_bounds
-from wavelet_gis.model.cloud_origin import cloud_mesh
 from wavelet_gis.model.dem import Dem, RasterOrigin, dem_mesh, grid_bounds, require_sound
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.origin import Origin, Original
+from wavelet_gis.model.points.cloud import PointCloud, cloud_bounds
+from wavelet_gis.model.points.mesh import cloud_mesh
 from wavelet_gis.notes import Note, collected, note, warn
 
 __all__ = [
@@ -180,7 +180,7 @@ def terrain_of_cloud(
     fault : str
         Why there is no CRS, for the warning.
     duplicates, max_edge, concave
-        See `wavelet_gis.model.cloud_origin.cloud_mesh`.
+        See `wavelet_gis.model.points.mesh.cloud_mesh`.
     """
     n_points = cloud.n_used
     if n_points < 3:

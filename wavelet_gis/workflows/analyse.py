@@ -11,10 +11,10 @@ from wavelet_core import Progress, TriangleMesh
 from wavelet_core import analyse as core_analyse
 from wavelet_core.errors import OptionError
 from wavelet_gis._memory import require_memory
-from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.origin import Original
+from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected, note
 from wavelet_gis.progress import Clock, part_of

@@ -86,7 +86,7 @@ def open_terrain(
     nodata, offline
         Of a raster; see `wavelet_gis.io.raster.read_dem`.
     duplicates, max_edge, concave
-        Of a point cloud; see `wavelet_gis.model.cloud_origin.cloud_mesh`.
+        Of a point cloud; see `wavelet_gis.model.points.mesh.cloud_mesh`.
 
     Raises
     ------

@@ -17,10 +17,10 @@ from wavelet_gis.io.formats import (
     any_of,
     suffix_of,
 )
-from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.origin import Original
+from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.save import write_tin
 

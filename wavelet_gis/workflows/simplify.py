@@ -17,8 +17,8 @@ from wavelet_core.progress import report
 from wavelet_core.refinement.finish import finished
 from wavelet_core.refinement.refine import Round
 from wavelet_gis._memory import require_memory
-from wavelet_gis.model.cloud import PointCloud
-from wavelet_gis.model.cloud_origin import CloudOrigin
+from wavelet_gis.model.points.cloud import PointCloud
+from wavelet_gis.model.points.origin import CloudOrigin
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected
 from wavelet_gis.progress import Clock, part_of

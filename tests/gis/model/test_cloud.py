@@ -7,8 +7,9 @@ from wavelet_core import TriangleMesh, analyse
 from wavelet_core.errors import MeshError, PyramidError
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.cloud import PointAttribute, PointCloud, cloud_bounds
-from wavelet_gis.model.cloud_origin import CloudOrigin, cloud_mesh
+from wavelet_gis.model.points.cloud import PointAttribute, PointCloud, cloud_bounds
+from wavelet_gis.model.points.mesh import cloud_mesh
+from wavelet_gis.model.points.origin import CloudOrigin
 
 
 def cloud_of(integers, *attributes, scales=(0.01, 0.01, 0.01)):

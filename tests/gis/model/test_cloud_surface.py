@@ -14,8 +14,9 @@ from wavelet_core.mesh.location import surface_errors
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import CrsError, InputFileError, PointCloudWarning
 from wavelet_gis.io.las import read_cloud, write_cloud
-from wavelet_gis.model.cloud import PointAttribute, PointCloud
-from wavelet_gis.model.cloud_origin import CloudOrigin, cloud_mesh
+from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.points.mesh import cloud_mesh
+from wavelet_gis.model.points.origin import CloudOrigin
 from wavelet_gis.model.terrain import terrain_of_cloud
 from wavelet_gis.products.level_raster import surface_dem
 from wavelet_gis.workflows.open import open_terrain

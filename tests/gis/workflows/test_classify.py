@@ -21,16 +21,15 @@ from wavelet_gis.model.terrain import terrain_of_dem
 from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.vertex_raster import label_band, value_bands
 from wavelet_gis.products.vertex_tables import energy_columns
-from wavelet_gis.workflows.learning.classify import (
-    NOT_KNOWN,
+from wavelet_gis.workflows.learning.classification import (
     Validation,
-    cluster_summary,
-    cluster_vertices,
     learn_classes,
     spatial_folds,
     validate_classes,
 )
+from wavelet_gis.workflows.learning.clustering import cluster_summary, cluster_vertices
 from wavelet_gis.workflows.learning.labels import (
+    NOT_KNOWN,
     cloud_with_classes,
     labels_from_las,
     labels_from_layer,

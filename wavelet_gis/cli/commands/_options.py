@@ -92,7 +92,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "--keep-withheld", action="store_true", help="the same for points with the withheld flag"
     )
     names_from(
-        "wavelet_gis.model.cloud_aside:DUPLICATE_RULES",
+        "wavelet_gis.model.points.aside:DUPLICATE_RULES",
         group.add_argument(
             "--duplicates",
             metavar="RULE",

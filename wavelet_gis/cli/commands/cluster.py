@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--count", type=int, metavar="N", help="of clusters; by default found from the data"
     )
     names_from(
-        "wavelet_gis.workflows.learning.classify:CLUSTERINGS",
+        "wavelet_gis.workflows.learning.clustering:CLUSTERINGS",
         clusters.add_argument("--method", metavar="NAME", help="by default the first of"),
     )
     clusters.add_argument(

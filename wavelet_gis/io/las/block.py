@@ -28,7 +28,7 @@ from wavelet_gis.io.las.layout import (
     parse_layout,
     records_of,
 )
-from wavelet_gis.model.cloud import PointCloud
+from wavelet_gis.model.points.cloud import PointCloud
 
 __all__ = ["TailPlace", "described", "for_laspy", "moved", "rebuilt", "tail_of", "with_counts"]
 

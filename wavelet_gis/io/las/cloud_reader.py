@@ -26,7 +26,7 @@ from wavelet_gis.io.las.layout import (
     records_of,
 )
 from wavelet_gis.model.attributes.ground import GROUND_CLASS, height_above_ground
-from wavelet_gis.model.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
 from wavelet_gis.notes import warn
 
 if TYPE_CHECKING:

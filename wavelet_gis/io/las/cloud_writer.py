@@ -23,7 +23,7 @@ from wavelet_gis.io.las.layout import (
 )
 from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.attributes.categories import channel_category
-from wavelet_gis.model.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
 
 if TYPE_CHECKING:
     from laspy.point.record import PackedPointRecord

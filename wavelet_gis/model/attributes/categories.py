@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
-from wavelet_gis.model.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
 
 __all__ = [
     "CATEGORIES",

@@ -26,14 +26,13 @@ from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.vertex_raster import Bands, label_band
 from wavelet_gis.progress import part_of
-from wavelet_gis.workflows.learning.classify import (
+from wavelet_gis.workflows.learning.classification import Validation
+from wavelet_gis.workflows.learning.clustering import (
     CLUSTERINGS,
-    Validation,
     cluster_summary,
     cluster_vertices,
-    merge_labels,
 )
-from wavelet_gis.workflows.learning.labels import UNLABELLED, cloud_with_classes
+from wavelet_gis.workflows.learning.labels import UNLABELLED, cloud_with_classes, merge_labels
 from wavelet_gis.workflows.learning.learn import learn
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 
@@ -167,7 +166,7 @@ def cluster(
     count : int, optional
         Number of clusters; by default found from the data.
     method : str, optional
-        A row of `wavelet_gis.workflows.learning.classify.CLUSTERINGS`, by default its first.
+        A row of `wavelet_gis.workflows.learning.clustering.CLUSTERINGS`, by default its first.
     channels : sequence of str
         Channels whose scales count; by default the geometry.
     seed : int

@@ -13,13 +13,21 @@ from numpy.typing import NDArray
 from wavelet_core.errors import OptionError
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.learning.classify import NOT_KNOWN, merge_labels
+from wavelet_gis.model.points.cloud import PointCloud
 
-__all__ = ["cloud_with_classes", "labels_from_las", "labels_from_layer"]
+__all__ = [
+    "NOT_KNOWN",
+    "cloud_with_classes",
+    "labels_from_las",
+    "labels_from_layer",
+    "merge_labels",
+]
 
 IntArray = NDArray[np.int64]
+
+#: Label of vertices whose class is not known.
+NOT_KNOWN = -1
 
 #: Classes that say that nobody has looked: created, never classified; and unclassified.
 UNLABELLED = (0, 1)
@@ -276,3 +284,24 @@ def _near_points(geo: GeoPyramid, shapes: NDArray[Any], classes: IntArray) -> In
     near = distance <= reach
     labels[vertex[near]] = classes[owner[near]]
     return labels
+
+
+def merge_labels(labels: IntArray, merges: Sequence[tuple[int, int]]) -> IntArray:
+    """Return labels with some classes counted as another.
+
+    Parameters
+    ----------
+    labels : (n_vertices,) int64
+        Classes.
+    merges : sequence of (from, to)
+        Each is applied to the labels as they came; to below 0 is not known.
+
+    Examples
+    --------
+    >>> merge_labels(np.array([2, 3, 4, 5]), [(3, 5), (4, 5)]).tolist()
+    [2, 5, 5, 5]
+    """
+    merged = labels.copy()
+    for source, target in merges:
+        merged[labels == source] = target
+    return merged

@@ -15,7 +15,7 @@ from wavelet_core.progress import Progress, part_of
 from wavelet_gis.model.attributes.categories import dimension_of
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.notes import Note, collected, note
-from wavelet_gis.workflows.learning.classify import (
+from wavelet_gis.workflows.learning.classification import (
     Validation,
     learn_classes,
     spatial_folds,

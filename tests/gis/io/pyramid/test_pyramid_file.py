@@ -10,10 +10,10 @@ from wavelet_core import Cancelled, TriangleMesh, analyse
 from wavelet_core.synthetic import hills
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary, write_pyramid
-from wavelet_gis.model.cloud import PointCloud
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.model.points.cloud import PointCloud
 
 
 def assert_same_pyramid(actual, expected):
@@ -139,8 +139,8 @@ def test_progress_rises_and_stops(raster_record, tmp_path):
 LIGHT = [
     "crs.frame",
     "model.dem",
-    "model.cloud",
-    "model.cloud_origin",
+    "model.points.cloud",
+    "model.points.origin",
     "model.exact_restore",
     "io.pyramid.array_codec",
     "io.pyramid.array_tables",

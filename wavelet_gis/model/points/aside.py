@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from wavelet_core._table import Table
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.triangulation import Merged, merge_duplicates
-from wavelet_gis.model.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
 
 __all__ = ["DUPLICATE_RULES", "Aside", "DuplicateRule", "MergedHeights", "merged_points"]
 

@@ -1,7 +1,7 @@
 """A point cloud as arrays: the points of a LAS file as they came.
 
 Nothing here opens a file: `wavelet_gis.io.las` does so with laspy. How the points become a mesh
-and the mesh the points again is the matter of `wavelet_gis.model.cloud_origin`.
+and the mesh the points again is the matter of `wavelet_gis.model.points.origin`.
 """
 
 from __future__ import annotations

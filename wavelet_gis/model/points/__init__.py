@@ -1,0 +1,1 @@
+"""Point clouds in memory: the points, those set aside, their mesh, and the way back from it."""

@@ -1,0 +1,258 @@
+"""Clusters of vertices by their scale signature. Arrays in, arrays out.
+
+Needs scikit-learn, which is imported when it is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core._table import Table
+from wavelet_core.errors import OptionError
+from wavelet_core.features.signature import Signature
+from wavelet_core.lifting.spacings import level_spacings
+from wavelet_core.progress import Progress, part_of, report
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.products.vertex_tables import energy_columns
+from wavelet_gis.workflows.learning._scikit_learn import (
+    FloatArray,
+    IntArray,
+    blocks_of,
+    few_threads,
+    require_sklearn,
+    sample_of,
+)
+
+__all__ = ["CLUSTERINGS", "Clustering", "Clusters", "cluster_summary", "cluster_vertices"]
+
+#: Vertices that clusters are found in; all others are then assigned to the nearest.
+MAX_FITTED = 50_000
+
+#: Numbers of clusters that are tried when none is given.
+TRIED_COUNTS = tuple(range(1, 11))
+
+
+@dataclass(frozen=True, slots=True)
+class Clusters:
+    """Vertices grouped by scale signature.
+
+    Attributes
+    ----------
+    labels : (n_vertices,) int64
+        0 is the cluster with the least energy, the last that with the most.
+    confidence : (n_vertices,) float64
+        How clearly a vertex belongs to its cluster: the posterior of a mixture; of k-means one
+        less the ratio of the distances to the nearest and the second nearest centre.
+    explained : dict of int to float
+        Share of the variance that each tried number of clusters explains; empty when the number
+        was given.
+    """
+
+    labels: IntArray
+    confidence: FloatArray
+    explained: dict[int, float]
+
+    @property
+    def n_clusters(self) -> int:
+        """Number of clusters."""
+        return int(self.labels.max(initial=-1)) + 1
+
+
+def cluster_vertices(
+    signature: Signature,
+    count: int | None = None,
+    method: str | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Clusters:
+    """Return clusters of vertices with alike signatures.
+
+    Parameters
+    ----------
+    signature : Signature
+        From `wavelet_core.features.signature.energy_signature`.
+    count : int, optional
+        Number of clusters; by default the knee of the variance that 1 to 10 clusters explain.
+    method : str, optional
+        A row of `CLUSTERINGS`, by default its first. Columns have unit variance.
+    seed : int
+        Of the sample that is fitted and of the starts; the same seed gives the same clusters.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    OptionError
+        A number of clusters below 1 or above the number of vertices, or another method.
+    MissingDependencyError
+        Without scikit-learn.
+
+    Notes
+    -----
+    The knee is where the curve of the explained variance over the number of clusters is farthest
+    above its chord: what a further cluster explains falls off from there. *Our choice:* terrain
+    is a continuum, and measures of separation (the mean silhouette) chose two clusters, rough and
+    smooth, on all of three DEMs that were tried.
+    """
+    row = CLUSTERINGS.chosen(method)
+    n_vertices = len(signature.values)
+    if count is not None and not 1 <= count <= min(n_vertices, 254):
+        raise OptionError(
+            f"count is {count}; give 1 to {min(n_vertices, 254)} clusters for {n_vertices} "
+            "vertices."
+        )
+    require_sklearn()
+    columns = _standardised(signature.values)
+    generator = np.random.default_rng(seed)
+    sample = sample_of(n_vertices, MAX_FITTED, generator)
+    fitted = columns[sample]
+    explained: dict[int, float] = {}
+    with few_threads(1):  # k-means and mixtures sum in the order of their threads
+        if count is None:
+            explained = _explained(fitted, seed, part_of(progress, 0.0, 0.7))
+            count = _knee(explained)
+        report(progress, 0.7)
+        model = row.fit(fitted, count, seed)
+        parts = [
+            row.assign(model, columns[rows])
+            for rows in blocks_of(n_vertices, part_of(progress, 0.8, 1.0))
+        ]
+    labels, confidence = (np.concatenate(part) for part in zip(*parts, strict=True))
+    report(progress, 1.0)
+    # Models number their clusters at will; energy gives an order that people can read.
+    energy = [signature.values[labels == k].mean() if (labels == k).any() else -np.inf
+              for k in range(count)]  # fmt: skip
+    rank = np.empty(count, dtype=np.int64)
+    rank[np.argsort(energy, kind="stable")] = np.arange(count)
+    return Clusters(rank[labels], confidence, explained)
+
+
+def cluster_summary(
+    geo: GeoPyramid, labels: IntArray, channel: str | None = None
+) -> dict[str, Any]:
+    """Return size and spectrum of every cluster, or of every class.
+
+    Parameters
+    ----------
+    geo : GeoPyramid
+        Whose vertices are labelled.
+    labels : (n_vertices,) int64
+        Those below 0 are left out.
+    channel : str, optional
+        Of the spectrum; by default the geometry.
+
+    Returns
+    -------
+    dict
+        ``spacings``: of the levels' details, the coarsest first; ``clusters``: for each label
+        ``n_vertices``, ``share`` and ``rms``, the root mean square detail of each level in the
+        unit of the input, and ``relative``, that over the one of all vertices.
+    """
+    squared = energy_columns(geo, channel) ** 2
+    overall = np.sqrt(squared.mean(axis=0))
+    rows = []
+    for label in np.unique(labels[labels >= 0]):
+        inside = labels == label
+        rms = np.sqrt(squared[inside].mean(axis=0))
+        relative = np.divide(rms, overall, out=np.ones_like(rms), where=overall > 0)
+        rows.append(
+            {
+                "label": int(label),
+                "n_vertices": int(inside.sum()),
+                "share": float(inside.mean()),
+                "rms": rms.tolist(),
+                "relative": relative.tolist(),
+            }
+        )
+    return {"spacings": level_spacings(geo.pyramid)[1:].tolist(), "clusters": rows}
+
+
+def _standardised(values: NDArray[np.float32]) -> FloatArray:
+    columns = values.astype(np.float64)
+    deviation = columns.std(axis=0)
+    return (columns - columns.mean(axis=0)) / np.where(deviation > 0, deviation, 1.0)
+
+
+def _explained(
+    columns: FloatArray, seed: int, progress: Progress | None = None
+) -> dict[int, float]:
+    total = float(((columns - columns.mean(axis=0)) ** 2).sum())
+    if total <= 0:
+        return {1: 1.0}
+    counts = [count for count in TRIED_COUNTS if count <= len(columns)]
+    shares = {}
+    for k, count in enumerate(counts):
+        report(progress, k / len(counts))
+        shares[count] = 1 - float(_fitted_kmeans(columns, count, seed).inertia_) / total
+    return shares
+
+
+def _knee(explained: dict[int, float]) -> int:
+    """Return the number whose point is farthest above the chord of the curve."""
+    counts = np.array(list(explained))
+    shares = np.array(list(explained.values()))
+    if len(counts) < 3:
+        return int(counts[-1])
+    chord = np.interp(counts, counts[[0, -1]], shares[[0, -1]])
+    return int(counts[np.argmax(shares - chord)])
+
+
+def _fitted_kmeans(columns: FloatArray, count: int, seed: int) -> Any:
+    from sklearn.cluster import KMeans
+
+    return KMeans(count, n_init=4, random_state=seed).fit(columns)
+
+
+def _fitted_mixture(columns: FloatArray, count: int, seed: int) -> Any:
+    from sklearn.mixture import GaussianMixture
+
+    return GaussianMixture(count, reg_covar=1e-4, random_state=seed).fit(columns)
+
+
+def _most_likely(model: Any, columns: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the component of a mixture with the highest posterior, and that."""
+    posterior = model.predict_proba(columns)
+    return posterior.argmax(axis=1), posterior.max(axis=1)
+
+
+def _nearest_centre(model: Any, columns: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the nearest centre of k-means, and how clearly it is the nearest."""
+    distances = model.transform(columns)
+    labels = distances.argmin(axis=1)
+    if distances.shape[1] == 1:
+        return labels, np.ones(len(labels))
+    nearest = np.partition(distances, 1, axis=1)
+    return labels, 1 - nearest[:, 0] / np.maximum(nearest[:, 1], 1e-300)
+
+
+class Clustering(NamedTuple):
+    """One way to find clusters: a row of :data:`CLUSTERINGS`.
+
+    name : str, what `cluster_vertices` takes
+    help : str, one line for lists
+    fit : callable, from columns, a number of clusters and a seed to a model
+    assign : callable, from a model and columns to the cluster of each row, and how clearly
+    """
+
+    name: str
+    help: str
+    fit: Callable[[FloatArray, int, int], Any]
+    assign: Callable[[Any, FloatArray], tuple[IntArray, FloatArray]]
+
+
+#: The methods of clustering, the default first.
+CLUSTERINGS = Table(
+    "method",
+    (
+        Clustering("kmeans", "the nearest of k means", _fitted_kmeans, _nearest_centre),
+        Clustering(
+            "mixture", "a mixture of Gaussians, which may differ in size and shape",
+            _fitted_mixture, _most_likely,
+        ),
+    ),
+)  # fmt: skip  # fmt: skip
