@@ -22,8 +22,8 @@ from .._validate import FloatArray, frozen
 from ..errors import PyramidError
 from ..mesh.normalisation import Normalisation
 from ..mesh.triangle_mesh import TriangleMesh
-from ..partition._mutable_level import HEIGHT_STEP, CollapseStep, SurfaceLevel, Witness
-from ..partition.questions import Answers, Collapses, Sight, Writer, ask
+from ..partition._mutable_level import HEIGHT_STEP, CollapseStep, SurfaceLevel
+from ..partition.questions import Answers, Collapses, Writer, ask
 from ..partition.recorded import Manner, RecordedLevel, Start, record, replay, takes
 from ..partition.stopping import StopRecord
 from ..progress import Progress, report
@@ -141,17 +141,16 @@ class Recorder:
         self._size = mesh.n_vertices
         self._level: RecordedLevel | None = None
         self._next: dict[str, Any] | None = None  # a part that begins if another step follows
+        self._n_asked = 0
         self._failed = False
 
-    @property
-    def witness(self) -> Witness | None:
-        """What looks at the collapses of the next step, for `SurfaceLevel.remove`."""
-        is_first = self._level is None and self._next is None
-        return self._look if is_first and not self._failed else None
-
-    def _look(self, sight: Sight, collapses: Collapses) -> None:
+    def look(self, level: SurfaceLevel, collapses: Collapses) -> None:
+        """Answer the questions about collapses that are about to be taken on a level."""
+        if self._failed or self._level is not None or self._next is not None:
+            return
+        self._n_asked = len(collapses.odd)
         try:
-            ask(self._writer, sight, collapses)
+            ask(self._writer, level.sight(), collapses)
         except PyramidError:
             self._failed = True
 
@@ -162,7 +161,9 @@ class Recorder:
         if self._next is not None:
             self._begin_part(self._next)
             self._next = None
-        if self._level is not None:
+        if self._level is None:
+            self._failed = len(step.odd) != self._n_asked  # the link condition forbade some
+        else:
             self._failed = not takes(self._level, self._writer, step, self._frame.weights)
         if _begins_part(level.n_vertices, self._size, self._mesh.n_vertices, self._manner):
             self._next = _begin(level, level.ids, self._columns, self._locked, self._manner)

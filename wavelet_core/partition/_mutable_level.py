@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -61,10 +60,6 @@ HEIGHT_STEP = 2.0**-46
 PACKED_SHARE = 0.7
 #: What the kernels call the norms of :data:`wavelet_core.partition.registry.NORMS`.
 _NORM_CODES = {"rms": LEAST_SQUARES, "max": LARGEST}
-
-
-#: Looks at the collapses of a step, and at what the level was before.
-Witness = Callable[[Sight, Collapses], None]
 
 
 class CollapseStep(NamedTuple):
@@ -213,7 +208,7 @@ class SurfaceLevel:
         return position[self._mesh.origin.reshape(-1, 3)[self._faces.lives]]
 
     def sight(self) -> Sight:
-        """Return what is known of the level before its step, which changes some of its arrays."""
+        """Return what is known of the level before its step, which changes its arrays."""
         vertices = self._vertices
         return Sight(
             self._mesh,
@@ -225,6 +220,10 @@ class SurfaceLevel:
             np.flatnonzero(vertices.lives).astype(np.int32),
             self._height_step,
         )
+
+    def collapses(self, odd: NDArray[np.int32]) -> Collapses:
+        """Return vertices that go, and onto which."""
+        return Collapses(odd, self._vertices.target[odd])
 
     def costs(self, slots: NDArray[np.int32]) -> FloatArray:
         """Return the costs of vertices, as last ranked."""
@@ -363,16 +362,9 @@ class SurfaceLevel:
 
     # -- one step --------------------------------------------------------------------------------
 
-    def remove(self, odd: NDArray[np.int32], witness: Witness | None = None) -> CollapseStep:
-        """Collapse the odd vertices, predict, update; return the step, details as weighted.
-
-        A witness is told what the level looked like before, and which vertices went onto which.
-        """
-        sight = None if witness is None else self.sight().kept()
+    def remove(self, odd: NDArray[np.int32]) -> CollapseStep:
+        """Collapse the odd vertices, predict, update; return the step, details as weighted."""
         odd, indptr, ring, ring_faces = self._collapse(odd)
-        if witness is not None and sight is not None:
-            witness(sight, Collapses(odd, ring[indptr[:-1]]))
-            del sight
         corners, weights, details = self._hand_over(odd, indptr, ring, ring_faces)
         vertices = self._vertices
         even_position = np.cumsum(vertices.lives, dtype=np.int32) - np.int32(1)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._validate import FloatArray, frozen
-from ._mutable_level import CollapseStep, LevelFigures, SurfaceLevel, Witness
+from ._mutable_level import CollapseStep, LevelFigures, SurfaceLevel
 from .questions import Collapses
 
 #: Share of the vertices that a level may take, at most, unless more cost nothing. Half of them is
@@ -125,9 +125,8 @@ class SurfaceAnalysis(NamedTuple):
 class Recorder(Protocol):
     """Is told what an analysis does; see `wavelet_core.lifting.recorded.Recorder`."""
 
-    @property
-    def witness(self) -> Witness | None:
-        """What looks at the collapses of the next step."""
+    def look(self, level: SurfaceLevel, collapses: Collapses) -> None:
+        """See which collapses are about to be taken on a level."""
 
     def took(self, level: SurfaceLevel, step: CollapseStep) -> None:
         """Keep a step, in input units, that ended at a level."""
@@ -189,8 +188,7 @@ def analyse_surface(
             stopped_by = "tolerance" if rules.has_tolerance else "nothing_left"
             break
         report(level.n_vertices)
-        witness = None if recorder is None else recorder.witness
-        taken = _take_step(level, rules, choice.odd, witness)
+        taken = _take_step(level, rules, choice.odd, recorder)
         if taken is None:
             stopped_by = "tolerance"
             break
@@ -245,11 +243,13 @@ def _candidates(
 
 
 def _take_step(
-    level: SurfaceLevel, rules: SurfaceRules, odd: NDArray[np.int32], witness: Witness | None
+    level: SurfaceLevel, rules: SurfaceRules, odd: NDArray[np.int32], recorder: Recorder | None
 ) -> tuple[SurfaceLevel, CollapseStep] | None:
     """Return the level after the step, and the step; None where no part of it keeps a tolerance."""
     if not rules.needs_proof:
-        return level, level.remove(odd, witness)
+        if recorder is not None:
+            recorder.look(level, level.collapses(odd))
+        return level, level.remove(odd)
     cheapest_first = odd[np.argsort(level.costs(odd), kind="stable")]
     for attempt in range(N_ATTEMPTS):
         n_odd = len(odd) >> attempt
@@ -258,8 +258,8 @@ def _take_step(
         trial = level.snapshot()
         step = trial.remove(np.sort(cheapest_first[:n_odd]))
         if rules.are_kept_by(trial):
-            if witness is not None:
-                sight = level.sight()
-                witness(sight, Collapses(sight.slots[step.odd], sight.slots[step.target]))
+            if recorder is not None:
+                slots = level.sight().slots
+                recorder.look(level, Collapses(slots[step.odd], slots[step.target]))
             return trial, step
     return None

@@ -76,13 +76,6 @@ class Sight(NamedTuple):
     slots: NDArray[np.int32]
     height_step: float
 
-    def kept(self) -> Sight:
-        """Return the same for after the collapse, which changes the mesh and its outline."""
-        return self._replace(
-            mesh=HalfEdges(*(array.copy() for array in self.mesh)),
-            outline=self.outline._replace(lives=self.outline.lives.copy()),
-        )
-
 
 class Collapses(NamedTuple):
     """Which vertices go, and onto which.
