@@ -127,7 +127,7 @@ def sort_groups(start, stop, indptr, others, is_new):
             is_new[i] = i == first or others[i] != others[i - 1]
 
 
-# Which pairs that are asked about are edges? indptr (n + 1,) int64, heads (k,) int32: those edges by
+# Which pairs that are asked about are edges? indptr (n + 1,) int64, heads (k,) int32: edges by
 # their lower ends; classes, nearest (n, m); joined (n, m) uint8, filled; is_told (k,) bool, set for
 # the edges that were asked about
 @kernel
