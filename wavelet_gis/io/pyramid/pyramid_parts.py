@@ -38,7 +38,12 @@ from wavelet_gis.io.pyramid.record_parts import (
     record_from_parts,
     record_to_parts,
 )
-from wavelet_gis.io.pyramid.source_parts import check_source, shrink_source, source_arrays
+from wavelet_gis.io.pyramid.source_parts import (
+    PALETTE,
+    check_source,
+    shrink_source,
+    source_arrays,
+)
 from wavelet_gis.model.dem import cell_plan
 from wavelet_gis.model.exact_restore import CORRECTIONS
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -90,7 +95,7 @@ def pyramid_to_parts(
     metadata: dict[str, Any] = {
         "format": {
             "name": FORMAT_NAME,
-            "version": FORMAT_VERSION,
+            "version": FORMAT_VERSION if PALETTE in source else FORMAT_VERSION - 1,
             "checksums": CHECKSUMS,
             "software": f"terrain-wavelets {wavelet_core.__version__}",
         },
