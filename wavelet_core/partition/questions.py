@@ -24,7 +24,7 @@ from .._kernels._jit import run_in_ranges
 from .._kernels.forecast import forecast_collapses, match_targets
 from .._kernels.half_edges import HalfEdges
 from .._kernels.outline import Outline
-from .._kernels.surface_choice import CANDIDATE, find_cheapest, take_cheapest
+from .._kernels.surface_choice import OUT_OF_QUESTION, find_first, take_first
 from .._kernels.surface_points import Surface
 from .._validate import FloatArray, frozen
 from ..errors import PyramidError
@@ -142,24 +142,22 @@ def _ask_going(
     is_odd: NDArray[np.bool_] | None,
 ) -> NDArray[np.int32]:
     """Ask in rounds which of the vertices go; return those, ascending."""
-    cost = codes.astype(np.float64)
+    place = (codes.astype(np.uint64) << np.uint64(32)) | sight.key
     active = sight.slots[codes[sight.slots] <= highest]
-    state = np.zeros(len(cost), dtype=np.int8)
-    state[active] = CANDIDATE
+    place[codes > highest] = OUT_OF_QUESTION
     taken = []
     is_first = True
     while len(active):
         wins = np.empty(len(active), dtype=bool)
-        arguments = (active, sight.mesh, state, cost, sight.key, wins)
-        run_in_ranges(find_cheapest, len(active), *arguments)
+        run_in_ranges(find_first, len(active), active, sight.mesh, place, wins)
         asked = active[wins]
         classes = _going_classes(codes[asked], middle, is_first)
         goes = pen.going(classes, None if is_odd is None else is_odd[asked])
-        state[asked[~goes]] = 0
+        place[asked[~goes]] = OUT_OF_QUESTION
         wins[wins] = goes
-        run_in_ranges(take_cheapest, len(active), active, wins, sight.mesh, state)
+        run_in_ranges(take_first, len(active), active, wins, sight.mesh, place)
         taken.append(asked[goes])
-        active = active[state[active] == CANDIDATE]
+        active = active[place[active] != OUT_OF_QUESTION]
         is_first = False
     return np.sort(np.concatenate(taken)) if taken else np.empty(0, dtype=np.int32)
 
