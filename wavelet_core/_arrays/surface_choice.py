@@ -27,7 +27,7 @@ def take_cheapest(start, stop, active, wins, mesh, state):
     state[taken] = TAKEN
 
 
-def find_first(start, stop, active, mesh, place, wins):
+def find_first(start, stop, active, mesh, place, wins, rival):
     ring = rings_of(active, mesh).ring
     around = np.where(ring >= 0, place[ring], OUT_OF_QUESTION)
     wins[:] = around.min(axis=1, initial=OUT_OF_QUESTION) > place[active]

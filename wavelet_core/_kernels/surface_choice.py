@@ -49,27 +49,33 @@ def take_cheapest(start, stop, active, wins, mesh, state):
 
 # Which of the vertices still in question come before all such neighbours?
 # active (k,) int32; place (n,) uint64, all different, OUT_OF_QUESTION for the others; wins (k,)
-# bool, filled
+# bool, filled; rival (n,) int32, kept from call to call: a neighbour that came before, at first
+# the vertex itself. While it is in question, the others need not be looked at.
 @kernel
-def find_first(start, stop, active, mesh, place, wins):
+def find_first(start, stop, active, mesh, place, wins, rival):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     for q in range(start, stop):
-        wins[q] = is_first(active[q], origin, twin, outgoing, place)
+        v = active[q]
+        if place[rival[v]] >= place[v]:
+            rival[v] = neighbour_before(v, origin, twin, outgoing, place)
+        wins[q] = rival[v] == v
 
 
+# A neighbour of v that comes before it; v itself if there is none
 @inlined
-def is_first(v, origin, twin, outgoing, place):
+def neighbour_before(v, origin, twin, outgoing, place):
     half_edge, own = outgoing[v], place[v]
     for _ in range(MAX_RING):
-        if place[origin[after(half_edge)]] < own:
-            return False
+        u = origin[after(half_edge)]
+        if place[u] < own:
+            return u
         last = before(half_edge)
         half_edge = twin[last]
         if half_edge < 0:
-            return place[origin[last]] > own
+            return origin[last] if place[origin[last]] < own else v
         if half_edge == outgoing[v]:
             break
-    return True
+    return v
 
 
 # Take the winners and their neighbours out of question

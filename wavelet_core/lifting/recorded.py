@@ -36,6 +36,7 @@ __all__ = [
     "RecordPart",
     "Recorder",
     "Told",
+    "is_error_guided",
     "part_of",
     "pyramid_of",
     "record_of",
@@ -210,7 +211,7 @@ def record_of(
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
     """
-    if not _is_error_guided(pyramid) or pyramid.n_levels == 0 or pyramid.part is not None:
+    if not is_error_guided(pyramid) or pyramid.n_levels == 0 or pyramid.part is not None:
         return None
     horizontal = pyramid.horizontal
     if horizontal is None or not np.array_equal(horizontal, mesh.vertices[:, :2]):
@@ -368,7 +369,8 @@ def part_of(
 _CANCELLED = "writing the pyramid was cancelled; nothing was kept."
 
 
-def _is_error_guided(pyramid: Pyramid) -> bool:
+def is_error_guided(pyramid: Pyramid) -> bool:
+    """Whether a pyramid's collapses are those of an error-guided analysis, whatever its heights."""
     parameters = pyramid.parameters
     names = ("partition", "prediction", "signal")
     return (

@@ -108,13 +108,12 @@ def ask(pen: Pen, sight: Sight, truth: Collapses | None = None) -> Collapses:
     if len(odd) == 0:
         raise PyramidError("a step without odd vertices; the file is damaged.")
     classes = _target_classes(best[odd], second[odd])
-    none = np.full(len(odd), -1, dtype=np.int32)
     if truth is None:
         ranks = pen.targets(classes, None)
-        target = _match(sight, odd, ranks, none)[1]
+        target = targets_at(sight, odd, ranks)
     else:
         target = truth.target
-        ranks = _match(sight, odd, none, target.copy())[0]
+        ranks = places_of_targets(sight, odd, target)
         pen.targets(classes, ranks)
     if (target < 0).any() or (ranks < 0).any():
         raise PyramidError("a target that no ring has; the file is damaged.")
@@ -145,11 +144,12 @@ def _ask_going(
     place = (codes.astype(np.uint64) << np.uint64(32)) | sight.key
     active = sight.slots[codes[sight.slots] <= highest]
     place[codes > highest] = OUT_OF_QUESTION
+    rival = np.arange(len(place), dtype=np.int32)
     taken = []
     is_first = True
     while len(active):
         wins = np.empty(len(active), dtype=bool)
-        run_in_ranges(find_first, len(active), active, sight.mesh, place, wins)
+        run_in_ranges(find_first, len(active), active, sight.mesh, place, wins, rival)
         asked = active[wins]
         classes = _going_classes(codes[asked], middle, is_first)
         goes = pen.going(classes, None if is_odd is None else is_odd[asked])
@@ -162,14 +162,31 @@ def _ask_going(
     return np.sort(np.concatenate(taken)) if taken else np.empty(0, dtype=np.int32)
 
 
+def targets_at(
+    sight: Sight, odd: NDArray[np.int32], places: NDArray[np.int32]
+) -> NDArray[np.int32]:
+    """Return the targets of vertices by their places among the legal ones; -1 beyond those."""
+    target = np.full(len(odd), -1, dtype=np.int32)
+    _match(sight, odd, places.copy(), target)
+    return target
+
+
+def places_of_targets(
+    sight: Sight, odd: NDArray[np.int32], target: NDArray[np.int32]
+) -> NDArray[np.int32]:
+    """Return the places of vertices' targets among the legal ones; -1 where it is none of them."""
+    places = np.full(len(odd), -1, dtype=np.int32)
+    _match(sight, odd, places, target.copy())
+    return places
+
+
 def _match(
     sight: Sight, odd: NDArray[np.int32], rank: NDArray[np.int32], target: NDArray[np.int32]
-) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+) -> None:
     run_in_ranges(
         match_targets, len(odd), odd, sight.mesh, sight.surface, sight.stays, sight.locked,
         sight.outline, sight.height_step, rank, target,
     )  # fmt: skip
-    return rank, target
 
 
 class Pen(Protocol):

@@ -85,13 +85,17 @@ class RecordedLevel(SurfaceLevel):
         known = None
         if truth is not None:
             known = Collapses(sight.slots[truth.odd], sight.slots[truth.target])
-        odd, target = ask(pen, sight, known)
+        step = self.collapse(*ask(pen, sight, known))
+        if step is None:
+            raise PyramidError("a collapse that no surface allows; the file is damaged.")
+        return step
+
+    def collapse(self, odd: NDArray[np.int32], target: NDArray[np.int32]) -> CollapseStep | None:
+        """Collapse vertices onto others, slots both; None if the link condition forbids one."""
         self._vertices.target[odd] = target
         n_vertices = self.n_vertices
         step = self.remove(odd)
-        if n_vertices - self.n_vertices != len(odd):
-            raise PyramidError("a collapse that no surface allows; the file is damaged.")
-        return step
+        return step if n_vertices - self.n_vertices == len(odd) else None
 
     def _hand_over(
         self,
