@@ -160,3 +160,9 @@ def write_las(path, xyz, epsg=2154, **dimensions):
         cloud[name] = values
     cloud.write(str(path))
     return str(path)
+
+
+def numbers(path, dtype="f4"):
+    """Return the numbers of a raster as an array."""
+    raster = read_raster(path)
+    return np.frombuffer(raster["bytes"], dtype).reshape(raster["shape"])

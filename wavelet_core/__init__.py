@@ -1,8 +1,9 @@
 """Reversible multiresolution pyramids of terrain TINs by graph-based wavelet lifting."""
 
 from . import metrics, synthetic
-from .accuracy.between_levels import PartialMesh, mesh_of_accuracy, mesh_of_size
+from .accuracy.between_levels import mesh_of_accuracy, mesh_of_size
 from .accuracy.fitted_heights import fitted
+from .accuracy.selective import PartialMesh
 from .errors import (
     Cancelled,
     MeshError,

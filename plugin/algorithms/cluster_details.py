@@ -23,8 +23,9 @@ from ..base import Values
 from ..parameters.choices import choice, clusterings
 from ..parameters.pyramid import crs_of
 from ..parameters.request import Request
+from ..parameters.surface_output import add_cell_size_parameter
 from ..ui import dependencies
-from ..ui.enums import NUMERIC_FIELD, POINTS, POLYGONS, REAL_NUMBER, WHOLE_NUMBER
+from ..ui.enums import NUMERIC_FIELD, POINTS, POLYGONS, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
@@ -160,20 +161,12 @@ class ClusterDetails(PyramidAlgorithm):
         )
 
     def _add_outputs(self) -> None:
-        self.add(
-            QgsProcessingParameterNumber(
-                "CELL_SIZE",
-                tr("Cell size of the raster"),
-                REAL_NUMBER,
-                None,
-                optional=True,
-                minValue=0.0,
-            ),
+        add_cell_size_parameter(
+            self,
             tr(
                 "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
                 "from, and for points their mean spacing."
             ),
-            advanced=True,
         )
         self.add(
             QgsProcessingParameterRasterDestination(

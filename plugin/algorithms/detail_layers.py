@@ -14,6 +14,7 @@ from qgis.core import (
 from ..base import Values
 from ..parameters.pyramid import checked_level, crs_of
 from ..parameters.request import Request
+from ..parameters.surface_output import add_cell_size_parameter
 from ..ui.enums import POINTS, REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
@@ -97,20 +98,12 @@ class DetailLayers(PyramidAlgorithm):
                 "place, in the unit of elevation. It maps at which scale the terrain is rough."
             ),
         )
-        self.add(
-            QgsProcessingParameterNumber(
-                "CELL_SIZE",
-                tr("Cell size of the raster"),
-                REAL_NUMBER,
-                None,
-                optional=True,
-                minValue=0.0,
-            ),
+        add_cell_size_parameter(
+            self,
             tr(
                 "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
                 "from, and for points their mean spacing."
             ),
-            advanced=True,
         )
         self.addOutput(QgsProcessingOutputNumber("N_DETAILS", tr("Number of points")))
         self.addOutput(QgsProcessingOutputNumber("MAX_MAGNITUDE", tr("Largest magnitude")))

@@ -15,7 +15,12 @@ from ..base import Values
 from ..parameters.mesh_output import add_mesh_parameter, mesh_packages
 from ..parameters.pyramid import checked_level, log_levels
 from ..parameters.request import Request
-from ..parameters.surface_output import add_error_outputs, surface_figures, write_surface
+from ..parameters.surface_output import (
+    add_cell_size_parameter,
+    add_error_outputs,
+    surface_figures,
+    write_surface,
+)
 from ..ui.enums import POINTS, POLYGONS, REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
@@ -79,20 +84,12 @@ class ExtractLevel(PyramidAlgorithm):
                 "above or below the surface, in the unit of elevation."
             ),
         )
-        self.add(
-            QgsProcessingParameterNumber(
-                "CELL_SIZE",
-                tr("Cell size of the raster"),
-                REAL_NUMBER,
-                None,
-                optional=True,
-                minValue=0.0,
-            ),
+        add_cell_size_parameter(
+            self,
             tr(
                 "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
                 "from, and for points the mean spacing of the level's vertices."
             ),
-            advanced=True,
         )
         self.add(
             QgsProcessingParameterFeatureSink(

@@ -17,7 +17,12 @@ from ..base import Values
 from ..parameters.analysis_options import add_design_parameters, design_options
 from ..parameters.mesh_output import add_mesh_parameter, mesh_packages
 from ..parameters.request import Request
-from ..parameters.surface_output import add_error_outputs, surface_figures, write_surface
+from ..parameters.surface_output import (
+    add_cell_size_parameter,
+    add_error_outputs,
+    surface_figures,
+    write_surface,
+)
 from ..ui.enums import POLYGONS, REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
@@ -124,17 +129,9 @@ class SimplifyDem(DemInput):
             tr("Height and all, also where the RMSE counts: heights are not fitted."),
             advanced=True,
         )
-        self.add(
-            QgsProcessingParameterNumber(
-                "CELL_SIZE",
-                tr("Cell size of the raster"),
-                REAL_NUMBER,
-                None,
-                optional=True,
-                minValue=0.0,
-            ),
+        add_cell_size_parameter(
+            self,
             tr("In the unit of the CRS; empty for the grid of the DEM, or the spacing of points."),
-            advanced=True,
         )
         self.add(
             QgsProcessingParameterFeatureSink(

@@ -460,11 +460,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Cell size of the raster</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Channels</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1831,6 +1826,11 @@
   <message>
     <location filename="../../plugin/parameters/restored_output.py"/>
     <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>Cell size of the raster</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -460,11 +460,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Cell size of the raster</source>
-    <translation>Zellgröße des Rasters</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Channels</source>
     <translation>Kanäle</translation>
   </message>
@@ -1832,6 +1827,11 @@
     <location filename="../../plugin/parameters/restored_output.py"/>
     <source>This pyramid was made from a point cloud; choose a file for the point cloud, or take the TIN.</source>
     <translation>Diese Pyramide ist aus einer Punktwolke gemacht; wählen Sie eine Datei für die Punktwolke, oder nehmen Sie das TIN.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>Cell size of the raster</source>
+    <translation>Zellgröße des Rasters</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/surface_output.py"/>

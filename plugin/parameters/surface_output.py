@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from qgis.core import QgsProcessingOutputNumber
+from qgis.core import QgsProcessingOutputNumber, QgsProcessingParameterNumber
 
+from ..ui.enums import REAL_NUMBER
 from ..ui.translation import tr
 from . import mesh_output, tin_output
 
@@ -14,6 +15,22 @@ if TYPE_CHECKING:
 
     from ..base import TerrainWaveletsAlgorithm
     from .request import Request
+
+
+def add_cell_size_parameter(algorithm: TerrainWaveletsAlgorithm, description: str) -> None:
+    """Declare CELL_SIZE, of a raster that is written; the description says what holds without."""
+    algorithm.add(
+        QgsProcessingParameterNumber(
+            "CELL_SIZE",
+            tr("Cell size of the raster"),
+            REAL_NUMBER,
+            None,
+            optional=True,
+            minValue=0.0,
+        ),
+        description,
+        advanced=True,
+    )
 
 
 def add_error_outputs(algorithm: TerrainWaveletsAlgorithm, where: str) -> None:

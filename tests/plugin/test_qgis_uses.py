@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from qgis_layers import Log, hills, read_raster, wkt_layer, write_raster
+from qgis_layers import Log, hills, numbers, wkt_layer, write_raster
 
 
 @pytest.fixture(scope="module")
@@ -27,11 +27,6 @@ def pyramid(qgis, tmp_path_factory):
             "PREDICTION": "plane",
         },
     )["OUTPUT"]
-
-
-def numbers(path, dtype="f4"):
-    raster = read_raster(path)
-    return np.frombuffer(raster["bytes"], dtype).reshape(raster["shape"])
 
 
 class TestFilter:
@@ -172,97 +167,6 @@ class TestClusters:
         assert "training" in message
 
 
-class TestSimplify:
-    @pytest.fixture
-    def dem(self, tmp_path):
-        return write_raster(tmp_path / "dem.tif", hills(90, 70).astype("float32"), -9999.0)
-
-    def test_the_number_of_vertices_is_exact(self, run, dem, tmp_path):
-        made = run(
-            "simplifydem",
-            {
-                "INPUT": dem,
-                "VERTICES": 400,
-                "TIN": "TEMPORARY_OUTPUT",
-                "RASTER": str(tmp_path / "r.tif"),
-                "MESH": str(tmp_path / "m.2dm"),
-                "OUTPUT": str(tmp_path / "p.gpkg"),
-            },
-        )
-        assert made["N_VERTICES"] == 400
-        assert made["TIN"].featureCount() == made["N_FACES"]
-        error = numbers(made["RASTER"]) - numbers(dem)
-        assert np.sqrt(np.mean(error**2)) == pytest.approx(made["RMSE_SURFACE"], rel=1e-3)
-        assert np.abs(error).max() == pytest.approx(made["MAX_ERROR_SURFACE"], rel=1e-3)
-        back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "b.tif")})
-        assert back["EXACT"] == "yes"
-
-    def test_fitted_heights_have_the_smaller_mean_square(self, run, dem):
-        parameters = {"INPUT": dem, "VERTICES": 200, "TIN": "TEMPORARY_OUTPUT"}
-        fitted, lifted = run("simplifydem", parameters), run("simplifydem", parameters | {"FIT": 0})
-        assert fitted["RMSE_SURFACE"] < 0.97 * lifted["RMSE_SURFACE"]
-
-    @pytest.mark.parametrize(
-        ("rule", "figure"), [("MAX_ERROR", "MAX_ERROR_SURFACE"), ("RMSE", "RMSE_SURFACE")]
-    )
-    def test_a_tolerance_is_kept(self, run, dem, rule, figure):
-        made = run("simplifydem", {"INPUT": dem, rule: 6.0, "TIN": "TEMPORARY_OUTPUT"})
-        assert 0 < made[figure] <= 6.0
-        assert made["N_VERTICES"] < 6300
-
-    @pytest.mark.parametrize(
-        ("suffix", "start"),
-        [
-            (".2dm", b"MESH2D"),
-            (".ply", b"ply"),
-            (".obj", b"#"),
-            (".stl", b"origin"),
-            (".glb", b"glTF"),
-            (".xml", b"<?xml"),
-            (".dxf", b"  0"),
-        ],
-    )
-    def test_every_mesh_format(self, run, dem, tmp_path, suffix, start):
-        library = {".glb": "trimesh", ".dxf": "ezdxf"}.get(suffix)
-        if library:
-            pytest.importorskip(library)
-        path = tmp_path / f"m{suffix}"
-        made = run("simplifydem", {"INPUT": dem, "VERTICES": 60, "MESH": str(path)})
-        assert made["MESH"] == str(path)
-        content = path.read_bytes()
-        assert content.startswith(start)
-        n_written = {
-            ".2dm": content.count(b"E3T"),
-            ".stl": int.from_bytes(content[80:84], "little"),
-            ".xml": content.count(b"<F>"),
-            ".dxf": content.count(b"3DFACE"),
-        }
-        if suffix in n_written:
-            assert n_written[suffix] == made["N_FACES"]
-
-    def test_two_rules_are_refused(self, provider, dem):
-        from qgis.core import QgsProcessingContext
-
-        algorithm = provider.algorithm("simplifydem").create()
-        is_fine, message = algorithm.checkParameterValues(
-            {"INPUT": dem, "VERTICES": 5, "RMSE": 1.0}, QgsProcessingContext()
-        )
-        assert not is_fine
-        assert "one of three" in message
-
-    def test_the_number_of_vertices_is_no_output(self, run, dem, tmp_path, monkeypatch):
-        here = tmp_path / "here"
-        here.mkdir()
-        monkeypatch.chdir(here)
-        made = run("simplifydem", {"INPUT": dem, "VERTICES": 60, "TIN": "TEMPORARY_OUTPUT"})
-        assert "VERTICES" not in made
-        assert list(here.iterdir()) == []
-
-    def test_without_a_rule_a_twentieth_of_the_cells_stays(self, run, dem):
-        made = run("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT"})
-        assert made["N_VERTICES"] == round(made["N_INPUT_VERTICES"] / 20)
-
-
 def test_report_needs_no_network(run, pyramid, tmp_path):
     made = run(
         "qualityreport",
@@ -378,119 +282,6 @@ class TestEveryOutputOpensStyled:
         assert len(set(of_cells.values())) == 3
 
 
-@pytest.mark.parametrize(
-    "words",
-    ["mesh from dem", "tin", "decimate", "thin", "generalise", "generalize", "dem to tin"],
-)
-def test_the_toolbox_finds_the_way_from_a_dem_to_a_tin(provider, words):
-    algorithm = provider.algorithm("simplifydem")
-    shown = [algorithm.displayName(), algorithm.shortDescription(), *algorithm.tags()]
-    text = " ".join(shown).lower()
-    assert all(word in text for word in words.split())
-
-
-def test_every_algorithm_is_described_in_one_line(provider):
-    for algorithm in provider.algorithms():
-        if algorithm.group() != "Models":
-            assert 20 < len(algorithm.shortDescription()) < 100, algorithm.name()
-
-
-def test_a_dialog_offers_what_the_tables_hold(provider):
-    import wavelet_core
-    from wavelet_gis.io.formats import MESH_FORMATS
-
-    algorithm = provider.algorithm("simplifydem")
-    for name in ("PARTITION", "NORM", "PREDICTION", "UPDATE", "SIGNAL"):
-        parameter = algorithm.parameterDefinition(name)
-        table = getattr(wavelet_core, f"{name}S")
-        assert parameter.options() == ["default", *table]
-        assert all(row.help in parameter.help() for row in table.values())
-    mesh = algorithm.parameterDefinition("MESH")
-    assert all(f"(*{row.suffix})" in mesh.fileFilter() for row in MESH_FORMATS)
-    assert mesh.fileFilter().startswith("2DM")
-
-
-def test_a_new_row_of_a_table_is_in_the_dialog(qgis, monkeypatch):
-    from terrain_wavelets.plugin.algorithms import ALGORITHMS
-
-    import wavelet_core
-    from wavelet_gis.io import formats
-
-    first = next(iter(wavelet_core.PREDICTIONS.values()))
-    new = first._replace(name="median", short="MD", help="the median of the neighbours")
-    monkeypatch.setitem(wavelet_core.PREDICTIONS, "median", new)
-    row = formats.MeshFormat(".msh", "Gmsh", "a:b", "finite elements")
-    monkeypatch.setattr(formats, "MESH_FORMATS", (*formats.MESH_FORMATS, row))
-    (algorithm,) = (a() for a in ALGORITHMS if a().name() == "simplifydem")
-    algorithm.initAlgorithm()
-    prediction = algorithm.parameterDefinition("PREDICTION")
-    assert "median" in prediction.options()
-    assert "the median of the neighbours (MD" in prediction.help()
-    assert "Gmsh (*.msh)" in algorithm.parameterDefinition("MESH").fileFilter()
-
-
-def test_dialogs_open_without_scipy_and_say_what_is_missing(qgis, monkeypatch):
-    from qgis.core import QgsProcessingContext
-    from terrain_wavelets.plugin.algorithms import ALGORITHMS
-    from terrain_wavelets.plugin.ui import dependencies
-
-    find = dependencies.missing
-    gone = dependencies.SCIPY
-    monkeypatch.setattr(
-        dependencies, "missing", lambda packages: [p for p in packages if p == gone or find([p])]
-    )
-    for kind in ALGORITHMS:
-        algorithm = kind()
-        algorithm.initAlgorithm()
-        is_fine, message = algorithm.checkParameterValues({}, QgsProcessingContext())
-        assert not is_fine
-        assert "missing Python package: scipy" in message
-
-
-def test_a_command_for_a_terminal_is_quoted(qgis, monkeypatch):
-    from terrain_wavelets.plugin.ui import dependencies
-
-    monkeypatch.setattr(dependencies.sys, "platform", "darwin")
-    assert "'laspy[lazrs]'" in dependencies.remedy([dependencies.LASPY])
-    monkeypatch.setattr(dependencies.sys, "platform", "win32")
-    assert '"laspy[lazrs]"' in dependencies.remedy([dependencies.LASPY])
-
-
-def test_an_outline_that_may_move_lets_a_level_be_coarser(run, tmp_path):
-    values = hills(40, 50).astype("float32")
-    rows, columns = np.mgrid[:40, :50]
-    values[np.hypot(rows - 20, columns - 25) > 17] = -9999.0
-    path = write_raster(tmp_path / "round.tif", values, -9999.0)
-    parameters = {"INPUT": path, "VERTICES": 12, "TIN": "TEMPORARY_OUTPUT"}
-    log = Log()
-    fixed = run("simplifydem", parameters, feedback=log)
-    assert fixed["N_VERTICES"] > 12
-    assert any("12" in line and "asked" in line for line in log.lines), log.lines
-    moved = run("simplifydem", {**parameters, "OUTLINE_TOLERANCE": 40.0})
-    assert moved["N_VERTICES"] == 12
-
-
-def test_what_is_noted_of_an_input_is_in_the_log(run, tmp_path):
-    values = hills(30, 40).astype("float32")
-    path = write_raster(tmp_path / "d.tif", values, None, 4326, (7.0, 44.0), 1 / 3600)
-    log = Log()
-    parameters = {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg"), "LEVELS": 1}
-    run("analysedem", parameters, feedback=log)
-    assert any("local metric frame" in line for line in log.lines)
-
-
-def test_an_error_names_parameters_as_the_dialog_does(provider):
-    from wavelet_core import OptionError
-
-    error = OptionError("{0} is {given}; leave out {1}.", "max_rms", "target_vertices", given=-1)
-    assert provider.algorithm("simplifydem").in_words(error) == (
-        "'RMSE' is -1; leave out 'Number of vertices'."
-    )
-    assert provider.algorithm("analysedem").in_words(error) == (
-        "'Stop at this RMSE' is -1; leave out 'Stop at this number of vertices'."
-    )
-
-
 def test_a_size_is_filtered_in_the_unit_of_the_layer_on_a_default_pyramid(run, tmp_path):
     path = write_raster(tmp_path / "feet.tif", hills(60, 60).astype("float32"), None, 2264, cell=1)
     pyramid = run("analysedem", {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg")})["OUTPUT"]
@@ -500,63 +291,6 @@ def test_a_size_is_filtered_in_the_unit_of_the_layer_on_a_default_pyramid(run, t
     assert made["RMS_CHANGE"] > 0
     (line,) = [line for line in log.lines if "sizes of" in line]
     assert "3.65761" in line  # twelve feet, in metres
-
-
-def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
-    """A step that asks nobody for long, as a triangulation does."""
-    import threading
-    import time
-
-    from terrain_wavelets.plugin.qgis_io.patience import computed
-
-    from wavelet_core.errors import Cancelled
-
-    log, told = Log(), []
-    timer = threading.Timer(1.5, log.cancel)
-    timer.start()
-    began = time.perf_counter()
-
-    def work(work):
-        time.sleep(8)
-        told.append(work.progress(1.0))
-
-    with pytest.raises(Cancelled):
-        computed(log, work, 0.2, 0.6)
-    assert time.perf_counter() - began < 4
-    assert len(set(log.fractions)) >= 3
-    assert log.fractions == sorted(log.fractions)
-    assert min(log.fractions) >= 20
-    assert max(log.fractions) < 60
-    assert not told, "nobody waited for it"
-
-
-def test_what_is_computed_comes_back_with_its_warnings_notes_and_errors(qgis):
-    from terrain_wavelets.plugin.qgis_io.patience import computed
-    from terrain_wavelets.plugin.ui.warning_log import shown_in
-
-    from wavelet_core.errors import MeshError
-    from wavelet_gis.errors import TerrainWarning
-    from wavelet_gis.notes import collected, warn
-
-    log = Log()
-
-    def work(work):
-        warn(TerrainWarning, "odd", "this is odd")
-        work.teller(log.pushInfo)("begun")
-        assert work.progress(0.5)
-        return 7
-
-    with shown_in(log, str), collected() as notes:
-        assert computed(log, work, 0.0, 1.0) == 7
-    assert [note.code for note in notes] == ["odd"]
-    assert any("this is odd" in line for line in log.warnings)
-    assert log.lines == ["begun"]
-
-    def fails(work):
-        raise MeshError("no mesh")
-
-    with pytest.raises(MeshError, match="no mesh"):
-        computed(log, fails, 0.0, 1.0)
 
 
 class TestContours:

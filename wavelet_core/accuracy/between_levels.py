@@ -1,32 +1,20 @@
-"""Meshes between two levels: only some of the vertices of a step are taken out."""
+"""Meshes between two levels: of a size, or of an accuracy."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 
-from .._validate import FloatArray, IntArray
+from .._validate import FloatArray
 from ..errors import OptionError
 from ..lifting.pyramid import Pyramid
 from ..lifting.step import analyse_level
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
-
-
-class PartialMesh(NamedTuple):
-    """A mesh of a chosen size out of a pyramid.
-
-    mesh : TriangleMesh
-    vertex_ids : (n_vertices,) int64, ids of its vertices in the input
-    level : int, the level it was made from: itself, or the next finer one
-    """
-
-    mesh: TriangleMesh
-    vertex_ids: IntArray
-    level: int
+from ..progress import Progress
+from .selective import PartialMesh, is_selective, mesh_within
 
 
 def mesh_of_size(pyramid: Pyramid, n_vertices: int) -> PartialMesh:
@@ -75,30 +63,63 @@ def mesh_of_size(pyramid: Pyramid, n_vertices: int) -> PartialMesh:
     return _Step(pyramid, level, mesh).without(n_out)
 
 
-def mesh_of_accuracy(pyramid: Pyramid, max_error: float) -> PartialMesh:
+def mesh_of_accuracy(
+    pyramid: Pyramid, max_error: ArrayLike, progress: Progress | None = None
+) -> PartialMesh:
     """Return the smallest mesh found in a pyramid whose vertical errors keep a tolerance.
 
     Parameters
     ----------
     pyramid : Pyramid
-    max_error : float
-        Largest vertical distance from an input vertex, in the unit of z.
+    max_error : float or array_like, shape (n_vertices,)
+        Largest vertical distance from an input vertex, in the unit of z; one for all of them, or
+        one for each.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Returns
     -------
     PartialMesh
-        The coarsest level that keeps the tolerance, thinned by as much of the next step as still
-        keeps it (found by bisection, and measured at all input vertices, as synthesised).
+        Fine only where it has to be, see `wavelet_core.accuracy.selective.mesh_within`. Of a
+        pyramid of signal "xyz", or by the one-ring mean: the coarsest level that keeps the
+        tolerance, thinned by as much of the next step as still keeps it (found by bisection, and
+        measured at all input vertices, as synthesised).
 
     Raises
     ------
     OptionError
-        A tolerance below 0.
+        A tolerance below 0; one for each vertex where the pyramid allows none.
+    Cancelled
+        ``progress`` returned False.
     """
-    if not max_error >= 0:
-        raise OptionError(
-            "{0} is {given}; give a distance of 0 or more.", "max_error", given=max_error
-        )
+    if np.ndim(max_error) > 0:
+        return mesh_within(pyramid, max_error, progress)
+    limit = float(np.asarray(max_error))
+    if not limit >= 0:
+        raise OptionError("{0} is {given}; give a distance of 0 or more.", "max_error", given=limit)
+    if not is_selective(pyramid):
+        return _thinned_level(pyramid, limit)
+    n_finest = pyramid.n_vertices(pyramid.n_levels)
+    found = mesh_within(pyramid, np.full(n_finest, limit), progress)
+    return _coarser_level(pyramid, limit, found)
+
+
+def _coarser_level(pyramid: Pyramid, max_error: float, found: PartialMesh) -> PartialMesh:
+    """Return a level that keeps a tolerance with fewer vertices, if there is one.
+
+    Heights that an update has moved are, on a level, those of the whole step.
+    """
+    points = pyramid.mesh(pyramid.n_levels).vertices
+    for level in range(pyramid.n_levels, -1, -1):
+        if pyramid.n_vertices(level) < found.mesh.n_vertices:
+            mesh = pyramid.mesh(level)
+            if _largest(mesh, points) > max_error:
+                break
+            found = PartialMesh(mesh, pyramid.vertex_ids(level), level)
+    return found
+
+
+def _thinned_level(pyramid: Pyramid, max_error: float) -> PartialMesh:
     points = pyramid.mesh(pyramid.n_levels).vertices
     finest = (pyramid.n_levels, pyramid.mesh(pyramid.n_levels))
     fitting = (pair for pair in enumerate(pyramid) if _largest(pair[1], points) <= max_error)

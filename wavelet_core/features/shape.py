@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
-from .._kernels.connectivity import fill_stars
 from .._kernels.shape import filter_moments, fit_quadratics
 from .._validate import FloatArray, frozen
 from ..errors import OptionError
 from ..lifting.pyramid import Pyramid
 from ..mesh.collapse import even_positions
+from ..mesh.connectivity import stars_of
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
 
@@ -189,9 +189,7 @@ def surface_shape(mesh: TriangleMesh) -> SurfaceShape:
     (45.0, 0.0)
     """
     faces = np.ascontiguousarray(mesh.faces, dtype=np.int32)
-    indptr = np.zeros(mesh.n_vertices + 1, dtype=np.int64)
-    star = np.empty(3 * len(faces), dtype=np.int32)
-    fill_stars(faces, indptr, star)
+    indptr, star = stars_of(faces, mesh.n_vertices)
     centre = mesh.vertices.mean(axis=0) if mesh.n_vertices else np.zeros(3)
     points = mesh.vertices - centre
     coefficients = np.empty((mesh.n_vertices, 5))

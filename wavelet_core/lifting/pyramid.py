@@ -273,9 +273,19 @@ class Pyramid:
     def filters(self, level: int) -> FilterPair:
         """Return the prediction and update filters of the step from ``level + 1`` to ``level``."""
         self._require_step(level)
-        step = self.steps[level]
-        ids = self._ids_by_level(level)
         integrals = self._integrals_by_level(level + 1)[level + 1]
+        return self._filter_pair(level, self._ids_by_level(level), integrals)
+
+    def all_filters(self) -> Iterator[FilterPair]:
+        """Yield the filters of every step, that onto level 0 first, in one pass."""
+        ids, integrals = self._ids_by_level(0), self._integrals_by_level(0)
+        for level in range(self.n_levels):
+            yield self._filter_pair(level, ids, integrals[level + 1])
+
+    def _filter_pair(
+        self, level: int, ids: dict[int, NDArray[np.int32]], integrals: FloatArray
+    ) -> FilterPair:
+        step = self.steps[level]
         even = even_positions(step.odd, len(ids[level + 1]))
         prediction = step.prediction(len(even))
         odd_integrals, coarser = split_integrals(integrals, step.odd, even, prediction)

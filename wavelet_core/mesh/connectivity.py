@@ -11,7 +11,15 @@ from .._kernels._jit import run_in_ranges
 from .._kernels.connectivity import BOUNDARY, INTERIOR, ISOLATED, PINCH, fill_stars, order_rings
 from ..errors import MeshError
 
-__all__ = ["BOUNDARY", "INTERIOR", "ISOLATED", "PINCH", "Connectivity", "build_connectivity"]
+__all__ = [
+    "BOUNDARY",
+    "INTERIOR",
+    "ISOLATED",
+    "PINCH",
+    "Connectivity",
+    "build_connectivity",
+    "stars_of",
+]
 
 
 class Connectivity(NamedTuple):
@@ -39,6 +47,30 @@ class Connectivity(NamedTuple):
         return self.ring[base : base + self.ring_size[vertex]]
 
 
+def stars_of(
+    faces: NDArray[np.int32], n_vertices: int
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Return the faces around every vertex.
+
+    Parameters
+    ----------
+    faces : ndarray of int32, shape (n_faces, 3)
+        Faces.
+    n_vertices : int
+        Number of vertices.
+
+    Returns
+    -------
+    indptr : ndarray of int64, shape (n_vertices + 1,)
+    star : ndarray of int32, shape (3 n_faces,)
+        Faces of vertex v are ``star[indptr[v]:indptr[v + 1]]``.
+    """
+    indptr = np.zeros(n_vertices + 1, dtype=np.int64)
+    star = np.empty(3 * len(faces), dtype=np.int32)
+    fill_stars(faces, indptr, star)
+    return indptr, star
+
+
 def build_connectivity(faces: NDArray[np.int32], n_vertices: int) -> Connectivity:
     """Return stars and one-rings of a triangle soup.
 
@@ -54,9 +86,7 @@ def build_connectivity(faces: NDArray[np.int32], n_vertices: int) -> Connectivit
     MeshError
         An edge that more than two faces share, or two faces of opposite orientation.
     """
-    star_indptr = np.zeros(n_vertices + 1, dtype=np.int64)
-    star = np.empty(3 * len(faces), dtype=np.int32)
-    fill_stars(faces, star_indptr, star)
+    star_indptr, star = stars_of(faces, n_vertices)
     ring = np.empty(3 * len(faces) + n_vertices, dtype=np.int32)
     ring_size = np.empty(n_vertices, dtype=np.int32)
     kind = np.empty(n_vertices, dtype=np.int8)

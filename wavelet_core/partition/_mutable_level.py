@@ -9,11 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
-from .._kernels.connectivity import fill_stars
 from .._kernels.half_edges import (
     HalfEdges,
-    find_outgoing,
-    find_twins,
     pack_faces,
     pack_vertices,
     renew_outgoing,
@@ -41,6 +38,7 @@ from .._kernels.surface_points import (
     update_heights,
 )
 from .._validate import FloatArray, frozen
+from ..mesh.half_edges import half_edges_of
 from ._level_state import FaceState, VertexState
 from .outline import tolerant_outline
 from .questions import Collapses, Sight
@@ -148,7 +146,7 @@ class SurfaceLevel:
     ) -> None:
         """Make the arrays; x, y and heights are from their local origins."""
         n_vertices, n_faces, n_channels = len(plan), len(faces), local.shape[1]
-        self._mesh, n_fans = _half_edges(faces, n_vertices)
+        self._mesh, n_fans = half_edges_of(faces, n_vertices)
         self._surface = Surface(
             np.ascontiguousarray(plan[:, 0]),
             np.ascontiguousarray(plan[:, 1]),
@@ -542,22 +540,6 @@ class SurfaceLevel:
             start=self._points.start.copy(), n_points=self._points.n_points.copy()
         )
         return twin
-
-
-def _half_edges(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges, NDArray[np.int8]]:
-    """Return the half-edge mesh, and how many fans of faces are around each vertex (0, 1, 2)."""
-    indptr = np.zeros(n_vertices + 1, dtype=np.int64)
-    star = np.empty(3 * len(faces), dtype=np.int32)
-    fill_stars(faces, indptr, star)
-    mesh = HalfEdges(
-        faces.ravel().copy(),
-        np.empty(3 * len(faces), dtype=np.int32),
-        np.empty(n_vertices, dtype=np.int32),
-    )
-    run_in_ranges(find_twins, len(faces), indptr, star, mesh)
-    n_fans = np.empty(n_vertices, dtype=np.int8)
-    run_in_ranges(find_outgoing, n_vertices, indptr, star, mesh, n_fans)
-    return mesh, n_fans
 
 
 def _starts(counts: NDArray) -> NDArray[np.int64]:

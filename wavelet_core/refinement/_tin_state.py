@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
-from .._kernels.connectivity import fill_stars
-from .._kernels.half_edges import HalfEdges, find_outgoing, find_twins
+from .._kernels.half_edges import HalfEdges
 from .._kernels.refine_flip import flip_edges, gains_of_flips
 from .._kernels.refine_move import move_vertices, propose_moves
 from .._kernels.refine_replace import (
@@ -32,6 +31,7 @@ from .._kernels.refine_tin import (
     take_in_order,
 )
 from .._validate import FloatArray, IntArray
+from ..mesh.half_edges import half_edges_of
 
 #: Vertices with more neighbours than this are not taken out: they claim too much of the TIN.
 MAX_REMOVED_RING = 15
@@ -103,7 +103,7 @@ class TinState:
         locked: NDArray[np.bool_],
         aim: Aim,
     ) -> None:
-        mesh, n_fans = _half_edges(faces, len(vertex_ids))
+        mesh, n_fans = half_edges_of(faces, len(vertex_ids))
         # where two fans meet, a walk sees one of them only
         held = locked | (n_fans != 1)
         x, y = (np.ascontiguousarray(column) for column in plan.T)
@@ -354,22 +354,6 @@ class TinState:
         base = np.cumsum(counts) - counts + self._n_used
         self._n_used += total
         return base
-
-
-def _half_edges(faces: IndexArray, n_vertices: int) -> tuple[HalfEdges, NDArray[np.int8]]:
-    """Return the half-edge mesh, and how many fans of faces are around each vertex (0, 1, 2)."""
-    indptr = np.zeros(n_vertices + 1, dtype=np.int64)
-    star = np.empty(3 * len(faces), dtype=np.int32)
-    fill_stars(faces, indptr, star)
-    mesh = HalfEdges(
-        faces.ravel().copy(),
-        np.empty(3 * len(faces), dtype=np.int32),
-        np.empty(n_vertices, dtype=np.int32),
-    )
-    run_in_ranges(find_twins, len(faces), indptr, star, mesh)
-    n_fans = np.empty(n_vertices, dtype=np.int8)
-    run_in_ranges(find_outgoing, n_vertices, indptr, star, mesh, n_fans)
-    return mesh, n_fans
 
 
 def _before(half_edge: IndexArray) -> IndexArray:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
-from wavelet_core.accuracy.between_levels import PartialMesh, mesh_of_accuracy, mesh_of_size
+from wavelet_core.accuracy.between_levels import mesh_of_accuracy, mesh_of_size
+from wavelet_core.accuracy.selective import PartialMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import Cover, surface_errors
 from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of

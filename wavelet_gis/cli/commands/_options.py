@@ -274,16 +274,21 @@ def wavelet_options(arguments: argparse.Namespace) -> WaveletOptions:
     }
 
 
-def add_surface_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a surface that is written as a raster or as a mesh file."""
-    raster = parser.add_argument_group("raster")
-    raster.add_argument(
+def add_cell_size_argument(parser: Any, of_points: str = "their mean spacing") -> None:
+    """Add the cell size of a raster that is written."""
+    parser.add_argument(
         "--cell-size",
         type=length,
         metavar="SIZE",
-        help="in the unit of the CRS; by default the grid of the input, and for points their "
-        "mean spacing at this level",
+        help="of a raster, in the unit of the CRS; by default the grid of the input, and for "
+        f"points {of_points}",
     )
+
+
+def add_surface_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a surface that is written as a raster or as a mesh file."""
+    raster = parser.add_argument_group("raster")
+    add_cell_size_argument(raster, "their mean spacing at this level")
     raster.add_argument("--attribute", metavar="NAME", help="an attribute instead of the elevation")
     raster.add_argument("--cog", action="store_true", help="write a cloud-optimised GeoTIFF")
     parser.add_argument(

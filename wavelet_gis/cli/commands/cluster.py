@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from wavelet_gis.cli.commands._options import add_overwrite_argument, names
+from wavelet_gis.cli.commands._options import add_cell_size_argument, add_overwrite_argument, names
 from wavelet_gis.cli.console import Console
 from wavelet_gis.cli.table_help import names_from
 
@@ -67,13 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="tell how well blocks of the map are predicted from the others (default)",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of samples and starts")
-    parser.add_argument(
-        "--cell-size",
-        type=float,
-        metavar="SIZE",
-        help="of a raster, in the unit of the CRS; by default the grid of the input, and for "
-        "points their mean spacing",
-    )
+    add_cell_size_argument(parser)
     add_overwrite_argument(parser)
 
 

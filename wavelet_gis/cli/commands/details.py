@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from wavelet_gis.cli.commands._options import add_overwrite_argument
+from wavelet_gis.cli.commands._options import add_cell_size_argument, add_overwrite_argument
 from wavelet_gis.cli.console import Console
 from wavelet_gis.io.formats import (
     PICTURE_SUFFIXES,
@@ -41,13 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--channel", metavar="NAME", help="of the pyramid's channels; by default the geometry"
     )
-    parser.add_argument(
-        "--cell-size",
-        type=float,
-        metavar="SIZE",
-        help="of a raster, in the unit of the CRS; by default the grid of the input, and for "
-        "points their mean spacing",
-    )
+    add_cell_size_argument(parser)
     add_overwrite_argument(parser)
 
 

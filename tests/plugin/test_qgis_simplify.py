@@ -1,0 +1,110 @@
+"""A DEM to a TIN of fewer vertices, in a real QGIS."""
+
+import numpy as np
+import pytest
+from qgis_layers import Log, hills, numbers, write_raster
+
+
+class TestSimplify:
+    @pytest.fixture
+    def dem(self, tmp_path):
+        return write_raster(tmp_path / "dem.tif", hills(90, 70).astype("float32"), -9999.0)
+
+    def test_the_number_of_vertices_is_exact(self, run, dem, tmp_path):
+        made = run(
+            "simplifydem",
+            {
+                "INPUT": dem,
+                "VERTICES": 400,
+                "TIN": "TEMPORARY_OUTPUT",
+                "RASTER": str(tmp_path / "r.tif"),
+                "MESH": str(tmp_path / "m.2dm"),
+                "OUTPUT": str(tmp_path / "p.gpkg"),
+            },
+        )
+        assert made["N_VERTICES"] == 400
+        assert made["TIN"].featureCount() == made["N_FACES"]
+        error = numbers(made["RASTER"]) - numbers(dem)
+        assert np.sqrt(np.mean(error**2)) == pytest.approx(made["RMSE_SURFACE"], rel=1e-3)
+        assert np.abs(error).max() == pytest.approx(made["MAX_ERROR_SURFACE"], rel=1e-3)
+        back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "b.tif")})
+        assert back["EXACT"] == "yes"
+
+    def test_fitted_heights_have_the_smaller_mean_square(self, run, dem):
+        parameters = {"INPUT": dem, "VERTICES": 200, "TIN": "TEMPORARY_OUTPUT"}
+        fitted, lifted = run("simplifydem", parameters), run("simplifydem", parameters | {"FIT": 0})
+        assert fitted["RMSE_SURFACE"] < 0.97 * lifted["RMSE_SURFACE"]
+
+    @pytest.mark.parametrize(
+        ("rule", "figure"), [("MAX_ERROR", "MAX_ERROR_SURFACE"), ("RMSE", "RMSE_SURFACE")]
+    )
+    def test_a_tolerance_is_kept(self, run, dem, rule, figure):
+        made = run("simplifydem", {"INPUT": dem, rule: 6.0, "TIN": "TEMPORARY_OUTPUT"})
+        assert 0 < made[figure] <= 6.0
+        assert made["N_VERTICES"] < 6300
+
+    @pytest.mark.parametrize(
+        ("suffix", "start"),
+        [
+            (".2dm", b"MESH2D"),
+            (".ply", b"ply"),
+            (".obj", b"#"),
+            (".stl", b"origin"),
+            (".glb", b"glTF"),
+            (".xml", b"<?xml"),
+            (".dxf", b"  0"),
+        ],
+    )
+    def test_every_mesh_format(self, run, dem, tmp_path, suffix, start):
+        library = {".glb": "trimesh", ".dxf": "ezdxf"}.get(suffix)
+        if library:
+            pytest.importorskip(library)
+        path = tmp_path / f"m{suffix}"
+        made = run("simplifydem", {"INPUT": dem, "VERTICES": 60, "MESH": str(path)})
+        assert made["MESH"] == str(path)
+        content = path.read_bytes()
+        assert content.startswith(start)
+        n_written = {
+            ".2dm": content.count(b"E3T"),
+            ".stl": int.from_bytes(content[80:84], "little"),
+            ".xml": content.count(b"<F>"),
+            ".dxf": content.count(b"3DFACE"),
+        }
+        if suffix in n_written:
+            assert n_written[suffix] == made["N_FACES"]
+
+    def test_two_rules_are_refused(self, provider, dem):
+        from qgis.core import QgsProcessingContext
+
+        algorithm = provider.algorithm("simplifydem").create()
+        is_fine, message = algorithm.checkParameterValues(
+            {"INPUT": dem, "VERTICES": 5, "RMSE": 1.0}, QgsProcessingContext()
+        )
+        assert not is_fine
+        assert "one of three" in message
+
+    def test_the_number_of_vertices_is_no_output(self, run, dem, tmp_path, monkeypatch):
+        here = tmp_path / "here"
+        here.mkdir()
+        monkeypatch.chdir(here)
+        made = run("simplifydem", {"INPUT": dem, "VERTICES": 60, "TIN": "TEMPORARY_OUTPUT"})
+        assert "VERTICES" not in made
+        assert list(here.iterdir()) == []
+
+    def test_without_a_rule_a_twentieth_of_the_cells_stays(self, run, dem):
+        made = run("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT"})
+        assert made["N_VERTICES"] == round(made["N_INPUT_VERTICES"] / 20)
+
+
+def test_an_outline_that_may_move_lets_a_level_be_coarser(run, tmp_path):
+    values = hills(40, 50).astype("float32")
+    rows, columns = np.mgrid[:40, :50]
+    values[np.hypot(rows - 20, columns - 25) > 17] = -9999.0
+    path = write_raster(tmp_path / "round.tif", values, -9999.0)
+    parameters = {"INPUT": path, "VERTICES": 12, "TIN": "TEMPORARY_OUTPUT"}
+    log = Log()
+    fixed = run("simplifydem", parameters, feedback=log)
+    assert fixed["N_VERTICES"] > 12
+    assert any("12" in line and "asked" in line for line in log.lines), log.lines
+    moved = run("simplifydem", {**parameters, "OUTLINE_TOLERANCE": 40.0})
+    assert moved["N_VERTICES"] == 12

@@ -1,0 +1,160 @@
+"""What toolbox, dialogs and log tell, and that they do while something is computed."""
+
+import pytest
+from qgis_layers import Log, hills, write_raster
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["mesh from dem", "tin", "decimate", "thin", "generalise", "generalize", "dem to tin"],
+)
+def test_the_toolbox_finds_the_way_from_a_dem_to_a_tin(provider, words):
+    algorithm = provider.algorithm("simplifydem")
+    shown = [algorithm.displayName(), algorithm.shortDescription(), *algorithm.tags()]
+    text = " ".join(shown).lower()
+    assert all(word in text for word in words.split())
+
+
+def test_every_algorithm_is_described_in_one_line(provider):
+    for algorithm in provider.algorithms():
+        if algorithm.group() != "Models":
+            assert 20 < len(algorithm.shortDescription()) < 100, algorithm.name()
+
+
+def test_a_dialog_offers_what_the_tables_hold(provider):
+    import wavelet_core
+    from wavelet_gis.io.formats import MESH_FORMATS
+
+    algorithm = provider.algorithm("simplifydem")
+    for name in ("PARTITION", "NORM", "PREDICTION", "UPDATE", "SIGNAL"):
+        parameter = algorithm.parameterDefinition(name)
+        table = getattr(wavelet_core, f"{name}S")
+        assert parameter.options() == ["default", *table]
+        assert all(row.help in parameter.help() for row in table.values())
+    mesh = algorithm.parameterDefinition("MESH")
+    assert all(f"(*{row.suffix})" in mesh.fileFilter() for row in MESH_FORMATS)
+    assert mesh.fileFilter().startswith("2DM")
+
+
+def test_a_new_row_of_a_table_is_in_the_dialog(qgis, monkeypatch):
+    from terrain_wavelets.plugin.algorithms import ALGORITHMS
+
+    import wavelet_core
+    from wavelet_gis.io import formats
+
+    first = next(iter(wavelet_core.PREDICTIONS.values()))
+    new = first._replace(name="median", short="MD", help="the median of the neighbours")
+    monkeypatch.setitem(wavelet_core.PREDICTIONS, "median", new)
+    row = formats.MeshFormat(".msh", "Gmsh", "a:b", "finite elements")
+    monkeypatch.setattr(formats, "MESH_FORMATS", (*formats.MESH_FORMATS, row))
+    (algorithm,) = (a() for a in ALGORITHMS if a().name() == "simplifydem")
+    algorithm.initAlgorithm()
+    prediction = algorithm.parameterDefinition("PREDICTION")
+    assert "median" in prediction.options()
+    assert "the median of the neighbours (MD" in prediction.help()
+    assert "Gmsh (*.msh)" in algorithm.parameterDefinition("MESH").fileFilter()
+
+
+def test_dialogs_open_without_scipy_and_say_what_is_missing(qgis, monkeypatch):
+    from qgis.core import QgsProcessingContext
+    from terrain_wavelets.plugin.algorithms import ALGORITHMS
+    from terrain_wavelets.plugin.ui import dependencies
+
+    find = dependencies.missing
+    gone = dependencies.SCIPY
+    monkeypatch.setattr(
+        dependencies, "missing", lambda packages: [p for p in packages if p == gone or find([p])]
+    )
+    for kind in ALGORITHMS:
+        algorithm = kind()
+        algorithm.initAlgorithm()
+        is_fine, message = algorithm.checkParameterValues({}, QgsProcessingContext())
+        assert not is_fine
+        assert "missing Python package: scipy" in message
+
+
+def test_a_command_for_a_terminal_is_quoted(qgis, monkeypatch):
+    from terrain_wavelets.plugin.ui import dependencies
+
+    monkeypatch.setattr(dependencies.sys, "platform", "darwin")
+    assert "'laspy[lazrs]'" in dependencies.remedy([dependencies.LASPY])
+    monkeypatch.setattr(dependencies.sys, "platform", "win32")
+    assert '"laspy[lazrs]"' in dependencies.remedy([dependencies.LASPY])
+
+
+def test_what_is_noted_of_an_input_is_in_the_log(run, tmp_path):
+    values = hills(30, 40).astype("float32")
+    path = write_raster(tmp_path / "d.tif", values, None, 4326, (7.0, 44.0), 1 / 3600)
+    log = Log()
+    parameters = {"INPUT": path, "OUTPUT": str(tmp_path / "p.gpkg"), "LEVELS": 1}
+    run("analysedem", parameters, feedback=log)
+    assert any("local metric frame" in line for line in log.lines)
+
+
+def test_an_error_names_parameters_as_the_dialog_does(provider):
+    from wavelet_core import OptionError
+
+    error = OptionError("{0} is {given}; leave out {1}.", "max_rms", "target_vertices", given=-1)
+    assert provider.algorithm("simplifydem").in_words(error) == (
+        "'RMSE' is -1; leave out 'Number of vertices'."
+    )
+    assert provider.algorithm("analysedem").in_words(error) == (
+        "'Stop at this RMSE' is -1; leave out 'Stop at this number of vertices'."
+    )
+
+
+def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
+    """A step that asks nobody for long, as a triangulation does."""
+    import threading
+    import time
+
+    from terrain_wavelets.plugin.qgis_io.patience import computed
+
+    from wavelet_core.errors import Cancelled
+
+    log, told = Log(), []
+    timer = threading.Timer(1.5, log.cancel)
+    timer.start()
+    began = time.perf_counter()
+
+    def work(work):
+        time.sleep(8)
+        told.append(work.progress(1.0))
+
+    with pytest.raises(Cancelled):
+        computed(log, work, 0.2, 0.6)
+    assert time.perf_counter() - began < 4
+    assert len(set(log.fractions)) >= 3
+    assert log.fractions == sorted(log.fractions)
+    assert min(log.fractions) >= 20
+    assert max(log.fractions) < 60
+    assert not told, "nobody waited for it"
+
+
+def test_what_is_computed_comes_back_with_its_warnings_notes_and_errors(qgis):
+    from terrain_wavelets.plugin.qgis_io.patience import computed
+    from terrain_wavelets.plugin.ui.warning_log import shown_in
+
+    from wavelet_core.errors import MeshError
+    from wavelet_gis.errors import TerrainWarning
+    from wavelet_gis.notes import collected, warn
+
+    log = Log()
+
+    def work(work):
+        warn(TerrainWarning, "odd", "this is odd")
+        work.teller(log.pushInfo)("begun")
+        assert work.progress(0.5)
+        return 7
+
+    with shown_in(log, str), collected() as notes:
+        assert computed(log, work, 0.0, 1.0) == 7
+    assert [note.code for note in notes] == ["odd"]
+    assert any("this is odd" in line for line in log.warnings)
+    assert log.lines == ["begun"]
+
+    def fails(work):
+        raise MeshError("no mesh")
+
+    with pytest.raises(MeshError, match="no mesh"):
+        computed(log, fails, 0.0, 1.0)
