@@ -147,11 +147,12 @@ class SurfaceLevel:
         """Make the arrays; x, y and heights are from their local origins."""
         n_vertices, n_faces, n_channels = len(plan), len(faces), local.shape[1]
         self._mesh, n_fans = half_edges_of(faces, n_vertices)
+        z = local.copy()
         self._surface = Surface(
             np.ascontiguousarray(plan[:, 0]),
             np.ascontiguousarray(plan[:, 1]),
-            local.copy(),
-            local,
+            z,
+            local if self.keeps_points else z,  # nobody measures
         )
         self._points = FacePoints(
             np.zeros(n_faces, np.int32),
@@ -165,7 +166,7 @@ class SurfaceLevel:
         self.n_vertices = n_vertices
         self._height_step = height_step
         self._vertices = VertexState.of_input(locked, locked | (n_fans != 1))
-        self._faces = FaceState.of_input(n_faces, n_channels)
+        self._faces = FaceState.of_input(n_faces, n_channels, with_errors=self.keeps_points)
         self._outline = tolerant_outline(
             outline_tolerance, self._surface.x, self._surface.y, self._mesh, n_fans
         )

@@ -151,7 +151,8 @@ def test_other_designs_list_their_filters(tmp_path):
 
 
 def test_means_that_repeat_come_back_from_a_palette(tmp_path):
-    thirds = np.rint(samples.hills(40, 50) * 3) / 3.0
+    terrain = samples.hills(40, 50)
+    thirds = np.rint(100 * terrain / np.ptp(terrain)) / 3.0
     thirds[3:6, 7:9] = -9999
     terrain = open_terrain(write_tif(tmp_path / "thirds.tif", thirds, nodata=-9999))
     geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=3))
