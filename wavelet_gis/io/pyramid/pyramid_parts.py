@@ -200,7 +200,7 @@ def levels_from_parts(contents: Contents, arrays: StoredArrays, level: int) -> G
 def _part_with(contents: Contents, level: int) -> int:
     """Return the last part of a file's record that holds a level; 0 for all of the file."""
     metadata = contents.metadata
-    if "record" not in metadata or "divisor" not in metadata.fields("source") or level < 0:
+    if "record" not in metadata or level < 0:
         return 0
     record = metadata.fields("record")
     begins = metadata.fields("pyramid").integer("n_levels")
@@ -213,19 +213,22 @@ def _part_with(contents: Contents, level: int) -> int:
 
 
 def _part_from_parts(contents: Contents, arrays: StoredArrays, index: int) -> GeoPyramid:
-    """Return the levels of a raster's pyramid from one of its parts down."""
+    """Return the levels of a pyramid from one of its parts down.
+
+    A raster's numbers are not needed, a cloud's are, for the places of the vertices.
+    """
     metadata = contents.metadata
-    described, fields = metadata.fields("pyramid"), Fields(metadata.fields("source"), "the raster")
-    fields.pop(CORRECTIONS, None)
+    described, fields = metadata.fields("pyramid"), Fields(metadata.fields("source"), "the source")
+    if "divisor" in fields:
+        fields.pop(CORRECTIONS, None)
     origin = origin_from_parts(fields, source_arrays(fields, arrays, with_numbers=False))
     frame = LocalFrame.from_dict(metadata.fields("frame"))
     design = _design_from(described, len(described.texts("channels")))
     record = record_from_parts(metadata.fields("record"), arrays, len(design["channels"]), index)
     ids = record.parts[index].ids
-    grid = origin.grid
-    if ids is None or grid is None or ids[-1] >= (origin.n_vertices or 0):
-        raise PyramidError(f"part {index} has vertices that the raster has not.")
-    plan = cell_plan(grid.geometry, grid.valid, frame, ids)
+    if ids is None or ids[-1] >= (origin.n_vertices or 0):
+        raise PyramidError(f"part {index} has vertices that the input has not.")
+    plan = _plan_of(origin, frame, ids)
     locked = _locked_from(described, arrays)
     if locked is not None and len(locked) != origin.n_vertices:
         raise PyramidError("a locked mask of another length; the file is damaged.")
@@ -234,6 +237,16 @@ def _part_from_parts(contents: Contents, arrays: StoredArrays, index: int) -> Ge
             record, index, plan, locked=None if locked is None else locked[ids], **design
         )
     return _geo_pyramid(contents, pyramid, origin, frame)
+
+
+def _plan_of(origin: Origin, frame: LocalFrame, ids: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return x and y of some vertices of the input, in the working frame."""
+    if origin.grid is not None:
+        return cell_plan(origin.grid.geometry, origin.grid.valid, frame, ids)
+    mesh = origin.kept_mesh(frame, np.empty((0, 3), dtype=np.int32))
+    if mesh is None:
+        raise PyramidError(_NO_INPUT)
+    return mesh.vertices[ids, :2]
 
 
 def listed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]]:
