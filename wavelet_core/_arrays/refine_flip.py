@@ -50,7 +50,7 @@ def _gains(at, corners, faces, present, tin, points, aim, gain):
         off = z[c, i][row] + slope_x[row, side] * px + slope_y[row, side] * py - points.z[p, i]
         squared += off * off
         if i == 0:
-            most = largest(row, squared, len(at))
+            most = largest(row, squared * points.strictness[p], len(at))
     new = total(row, weighed(squared, aim.is_power), len(at))
     better = (new < present - LEAST_GAIN * present) & (most <= aim.tolerance)
     gain[at[better]] = (present - new)[better]

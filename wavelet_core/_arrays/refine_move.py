@@ -37,10 +37,10 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
     to[:], gain[:], shift[:] = -1, 0.0, 0.0
     may = (tin.mesh.outgoing[chosen] >= 0) & ~tin.is_locked[chosen]
     for stars in stars_of(chosen, may, tin, points):
-        _propose(stars, tin, aim, to, shift, gain)
+        _propose(stars, tin, points.strictness, aim, to, shift, gain)
 
 
-def _propose(stars, tin, aim, to, shift, gain):
+def _propose(stars, tin, strictness, aim, to, shift, gain):
     n, size = stars.ring.shape
     n_sides, n_channels = stars.spoke.shape[1], tin.z.shape[1]
     row, side = stars.row, stars.side
@@ -92,7 +92,7 @@ def _propose(stars, tin, aim, to, shift, gain):
     q, order_of = _trials(stars, moves, model, stiff, tin, aim)
     threshold = best - LEAST_GAIN * present
     for t in range(N_TRIALS):
-        _try(stars, q[order_of == t], present, threshold, aim, to, shift, gain)
+        _try(stars, q[order_of == t], strictness, present, threshold, aim, to, shift, gain)
 
 
 def _trials(stars, moves, model, stiff, tin, aim):
@@ -127,7 +127,7 @@ def _trials(stars, moves, model, stiff, tin, aim):
     return q, np.arange(len(q)) - begins
 
 
-def _try(stars, q, present, threshold, aim, to, shift, gain):
+def _try(stars, q, strictness, present, threshold, aim, to, shift, gain):
     """Lay the stars around the points ``q``, at most one each; keep what is better."""
     n_channels, size, n_sides = stars.z.shape[2], stars.ring.shape[1], stars.spoke.shape[1]
     rows = stars.row[q]
@@ -160,7 +160,7 @@ def _try(stars, q, present, threshold, aim, to, shift, gain):
         off += weight * uz[row, i]
         squared += off * off
         if i == 0:
-            most = largest(row, squared, len(q))
+            most = largest(row, squared * strictness[stars.p[mine]], len(q))
     if not aim.is_free:
         new = total(row, weighed(squared, aim.is_power), len(q))
     better = np.flatnonzero((new < threshold[rows]) & (most <= aim.tolerance))

@@ -82,7 +82,7 @@ def _laid(stars, j, legal, tin, points, aim):
         off = za[row] + slope_x[row, t] * px + slope_y[row, t] * py - points.z[p, i]
         squared += off * off
         if i == 0:
-            most = largest(row, squared, n)
+            most = largest(row, squared * points.strictness[p], n)
     return total(row, weighed(squared, aim.is_power), n), legal & (most <= aim.tolerance)
 
 

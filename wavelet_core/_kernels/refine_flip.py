@@ -70,7 +70,7 @@ def gains_of_flips(start, stop, half_edges, tin, points, aim, error, gain):
                     off = z[c, i] + slope_x[side, i] * px + slope_y[side, i] * py - points.z[p, i]
                     squared += off * off
                     if i == 0:
-                        largest = max(largest, squared)
+                        largest = max(largest, squared * points.strictness[p])
                 total += weighed(squared, aim.is_power)
         if total < present - LEAST_GAIN * present and largest <= aim.tolerance:
             gain[row] = present - total

@@ -194,7 +194,7 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
                         off += weight * near_z[q, i]
                         squared += off * off
                         if i == 0:
-                            largest = max(largest, squared)
+                            largest = max(largest, squared * points.strictness[near[p]])
                 total += weighed(squared, aim.is_power)
             for i in range(n_channels):
                 dz[i] = near_z[q, i]

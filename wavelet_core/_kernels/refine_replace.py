@@ -93,7 +93,7 @@ def propose_removals(
                     off = z[a, i] + slope_x[t, i] * px + slope_y[t, i] * py - points.z[p, i]
                     squared += off * off
                     if i == 0:
-                        largest = max(largest, squared)
+                        largest = max(largest, squared * points.strictness[p])
                 total += weighed(squared, aim.is_power)
                 if total >= limit or largest > aim.tolerance:
                     break

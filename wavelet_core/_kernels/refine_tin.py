@@ -37,6 +37,7 @@ class Points(NamedTuple):
     """The input, and which of it lies in each face.
 
     x, y : (n_points,) float64, z : (n_points, c) float64
+    strictness : (n_points,) float64, times a squared height error, for the tolerance
     first, n_points : (n_faces,) int64, where in the pool the list of a face is, and how long
     pool : (capacity,) int32
     """
@@ -44,6 +45,7 @@ class Points(NamedTuple):
     x: NDArray[np.float64]
     y: NDArray[np.float64]
     z: NDArray[np.float64]
+    strictness: NDArray[np.float64]
     first: NDArray[np.int64]
     n_points: NDArray[np.int64]
     pool: NDArray[np.int32]
@@ -54,7 +56,7 @@ class Aim(NamedTuple):
 
     is_power : bool, the eighth power of the error, not its square
     is_free : bool, whether heights are fitted; else a vertex has those of its point
-    tolerance : float, the largest squared height error that is legal
+    tolerance : float, the largest squared height error that is legal, times the point's strictness
     reach : float, squared distance that a vertex may move at once
     """
 

@@ -54,19 +54,25 @@ def is_selective(pyramid: Pyramid) -> bool:
 
 
 def mesh_within(
-    pyramid: Pyramid, tolerance: ArrayLike, progress: Progress | None = None
+    pyramid: Pyramid,
+    tolerance: ArrayLike,
+    progress: Progress | None = None,
+    *,
+    keep_points: bool = False,
 ) -> PartialMesh:
     """Return the coarsest mesh of a pyramid whose errors keep a tolerance that varies by place.
 
     Parameters
     ----------
     pyramid : Pyramid
-        Of signal "z", by any update but the one-ring mean.
+        Of signal "z"; by any update but the one-ring mean, unless ``keep_points`` is given.
     tolerance : array_like, shape (n_vertices,)
         The largest vertical distance that each vertex of the input may have from the surface; in
         the unit of z. Infinite where any will do.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
+    keep_points : bool
+        Vertices are input vertices, height and all, whatever an update made of them.
 
     Returns
     -------
@@ -84,9 +90,10 @@ def mesh_within(
     Notes
     -----
     Starts with the coarsest level and undoes the collapse that laid a face, and those that it
-    depends on, wherever an input vertex is too far from that face. Without an update the heights
-    are the input's and the result is the smallest there is in the pyramid. With an update a height
-    depends on what is undone around it; it is synthesised by the steps that are, and measured so.
+    depends on, wherever an input vertex is too far from that face. Without an update, and with
+    ``keep_points``, the heights are the input's and the result is the smallest there is in the
+    pyramid. With an update a height depends on what is undone around it; it is synthesised by the
+    steps that are, and measured so.
     """
     points = pyramid.mesh(pyramid.n_levels).vertices
     limits = np.asarray(tolerance, dtype=np.float64)
@@ -98,7 +105,7 @@ def mesh_within(
             shape=limits.shape,
             n_vertices=len(points),
         )
-    if not is_selective(pyramid):
+    if not (is_selective(pyramid) or (keep_points and pyramid.signal == "z")):
         raise OptionError(
             "a tolerance that varies by place needs {0} 'z' and {1} 'minimum_norm' or 'none'; "
             "analyse the input anew.",
@@ -106,7 +113,7 @@ def mesh_within(
             "update",
         )
     history = _history_of(pyramid)
-    heights = _Heights(pyramid)
+    heights = _Heights(pyramid, keep_points)
     is_undone = np.zeros(len(points), dtype=bool)
     is_there = history.present(is_undone)
     where = _Places(history, points, is_there)
@@ -243,14 +250,14 @@ class _Places:
 class _Heights:
     """The coefficients of the vertices that are there, as what is undone gives them."""
 
-    def __init__(self, pyramid: Pyramid) -> None:
+    def __init__(self, pyramid: Pyramid, keep_points: bool) -> None:
         self._pyramid = pyramid
         self._ids = pyramid._ids_by_level(0)
         # Without an update nothing ever changes the coefficients of a vertex that stays.
         self._finest: FloatArray | None = None
         self._filters: list[FilterPair] = []
         self._movers = self._parents = csr_array((0, 0))
-        if UPDATES.find(pyramid.update).is_empty:
+        if keep_points or UPDATES.find(pyramid.update).is_empty:
             self._finest = pyramid.columns_of(pyramid.mesh(pyramid.n_levels))
         else:
             self._filters = list(pyramid.all_filters())

@@ -90,6 +90,8 @@ class TinState:
         The face of each point, -1 for none.
     locked : (n_vertices,) bool
     aim : Aim
+    strictness : (n_points,) float64, optional
+        By how much a squared height error counts against the tolerance of the aim; by default 1.
     """
 
     def __init__(
@@ -102,6 +104,7 @@ class TinState:
         face_of: IntArray,
         locked: NDArray[np.bool_],
         aim: Aim,
+        strictness: FloatArray | None = None,
     ) -> None:
         mesh, n_fans = half_edges_of(faces, len(vertex_ids))
         # where two fans meet, a walk sees one of them only
@@ -116,7 +119,8 @@ class TinState:
         count = np.bincount(face_of[inside], minlength=len(faces)).astype(np.int64)
         pool = np.empty(ROOM * len(listed), dtype=np.int32)
         pool[: len(listed)] = listed
-        self.points = Points(x, y, columns, np.cumsum(count) - count, count, pool)
+        strict = np.ones(len(x)) if strictness is None else strictness
+        self.points = Points(x, y, columns, strict, np.cumsum(count) - count, count, pool)
         self.aim = aim
         self._n_used = len(listed)
         self._key = _scattered(len(vertex_ids))

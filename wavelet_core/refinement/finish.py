@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .._validate import IntArray
 from ..accuracy.fitted_heights import fitted
+from ..accuracy.selective import mesh_within
 from ..errors import OptionError
 from ..lifting.pyramid import Pyramid
 from ..mesh.connectivity import BOUNDARY, build_connectivity
 from ..mesh.location import Cover, cover_of
 from ..mesh.triangle_mesh import TriangleMesh
-from ..progress import Progress
+from ..progress import Progress, part_of
 from .refine import Round, refine
 
 
@@ -102,6 +104,48 @@ def finished(
     return FinishedTin(mesh, ids, cover, (), False)
 
 
+def finished_within(
+    pyramid: Pyramid,
+    original: TriangleMesh,
+    max_error: ArrayLike,
+    *,
+    rounds: int | None = None,
+    progress: Progress | None = None,
+) -> FinishedTin:
+    """Return the coarsest TIN of a pyramid that keeps a tolerance by place, thinned as it allows.
+
+    Its vertices are input vertices, height and all.
+
+    Parameters
+    ----------
+    pyramid : Pyramid
+        Of signal "z", however it was made; one by the largest error has the fewest vertices.
+    original : TriangleMesh
+        Its input.
+    max_error : array_like, shape (n_vertices,)
+        The largest vertical distance of each input vertex from the TIN.
+    rounds : int, optional
+        Of `refine`, 0 for none; by default as many as pay.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    OptionError
+        A pyramid of signal "xyz", or tolerances that are not one for each vertex.
+    Cancelled
+        ``progress`` returned False.
+    """
+    part = mesh_within(pyramid, max_error, part_of(progress, 0.0, 0.5), keep_points=True)
+    cover = cover_of(part.mesh, original.vertices[:, :2])
+    if rounds == 0:
+        return FinishedTin(part.mesh, part.vertex_ids, cover, (), False)
+    return _refined(
+        pyramid, original, part.mesh, part.vertex_ids, cover, rounds, False,
+        part_of(progress, 0.5, 1.0), max_error,
+    )  # fmt: skip
+
+
 def _refined(
     pyramid: Pyramid,
     original: TriangleMesh,
@@ -111,10 +155,14 @@ def _refined(
     rounds: int | None,
     keep_points: bool,
     progress: Progress | None,
+    max_error: ArrayLike | None = None,
 ) -> FinishedTin:
     parameters = pyramid.parameters
+    is_within = max_error is not None
+    norm = "max" if is_within else parameters["norm"]
+    max_error = max_error if is_within else parameters["max_error"]
     locked = np.zeros(len(ids), dtype=bool) if pyramid.locked is None else pyramid.locked[ids]
-    if parameters["outline_tolerance"] > 0 and parameters["max_error"] is not None:
+    if parameters.get("outline_tolerance", 0.0) > 0 and max_error is not None:
         # the points that the outline left outside keep the tolerance at its nearest edge
         connectivity = build_connectivity(mesh.faces.astype(np.int32), mesh.n_vertices)
         locked = locked | (connectivity.kind == BOUNDARY)
@@ -122,15 +170,15 @@ def _refined(
         mesh,
         original,
         ids,
-        norm=parameters["norm"],
+        norm=norm,
         rounds=rounds,
         keep_points=keep_points,
-        max_error=parameters["max_error"],
-        max_rms=parameters["max_rms"],
-        attribute_weights=parameters["attribute_weights"],
+        max_error=max_error,
+        max_rms=None if is_within else parameters["max_rms"],
+        attribute_weights=parameters.get("attribute_weights"),
         locked=locked,
         cover=cover,
         progress=progress,
     )
-    is_fitted = parameters["norm"] == "rms" and not keep_points
+    is_fitted = norm == "rms" and not keep_points
     return FinishedTin(result.mesh, result.vertex_ids, result.cover, result.rounds, is_fitted)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._kernels._jit import fitting_engine
 from .._kernels.refine_tin import Aim
-from .._validate import IntArray
+from .._validate import FloatArray, IntArray
 from ..accuracy.fitted_heights import fitted
 from ..errors import MeshError, OptionError
 from ..lifting.options import checked_weights
@@ -80,7 +80,7 @@ def refine(
     norm: str = "rms",
     rounds: int | None = None,
     keep_points: bool = False,
-    max_error: float | None = None,
+    max_error: ArrayLike | None = None,
     max_rms: float | None = None,
     attribute_weights: Sequence[float] | None = None,
     locked: ArrayLike | None = None,
@@ -105,9 +105,9 @@ def refine(
         at most 8.
     keep_points : bool
         With ``"rms"``, too, each vertex is an input vertex, height and all.
-    max_error : float, optional
+    max_error : float or array_like, shape (n_original,), optional
         With ``"max"``: take out vertices while no input vertex is farther off than this,
-        vertically; the mesh has to keep that already.
+        vertically; one distance for all, or one for each. The mesh has to keep that already.
     max_rms : float, optional
         With ``"rms"``: take out vertices while the root mean square error is at most this.
     attribute_weights : sequence of float, optional
@@ -155,7 +155,8 @@ def refine(
        interpolation", IMA Journal of Numerical Analysis 10(1), 1990.
     """
     ids = _checked_ids(vertex_ids, mesh, original)
-    _require_sense(norm, rounds, max_error, max_rms)
+    limits = _checked_limits(max_error, original)
+    _require_sense(norm, rounds, None if limits is None else float(limits.min()), max_rms)
     if mesh.attribute_names != original.attribute_names:
         raise OptionError(
             "{0} has the attributes {of_mesh}, {1} {of_original}; refine a level of its own "
@@ -173,11 +174,11 @@ def refine(
     cover = cover_of(mesh, original.vertices[:, :2]) if cover is None else cover
     task = _Task(
         mesh, original, ids, fixed, cover, norm == "max", norm == "rms" and not keep_points,
-        max_error, max_rms, attribute_weights,
+        limits, max_rms, attribute_weights,
     )  # fmt: skip
     with fitting_engine(original.n_vertices):
         work = _Work(task, progress)
-        if max_error is None and max_rms is None:
+        if limits is None and max_rms is None:
             work.run(rounds)
         else:
             work.thin(rounds)
@@ -194,7 +195,7 @@ class _Task(NamedTuple):
     cover: Cover
     is_largest: bool
     is_free: bool
-    max_error: float | None
+    limits: FloatArray | None
     max_rms: float | None
     attribute_weights: Sequence[float] | None
 
@@ -228,11 +229,12 @@ class _Work:
             task.locked,
             Aim(
                 # within a tolerance, errors that are small rather than even leave room for removals
-                task.is_largest and task.max_error is None,
+                task.is_largest and task.limits is None,
                 task.is_free,
                 tolerance,
                 float(REACH * step) ** 2,
             ),
+            _strictness(task.limits, scale),
         )
         self._error = np.inf
         self.rounds: list[Round] = []
@@ -241,9 +243,9 @@ class _Work:
     @staticmethod
     def _scale_of(task: _Task) -> tuple[float, float]:
         """Return the unit in which eighth powers are taken, and the legal squared error in it."""
-        if task.max_error is not None:
-            scale = task.max_error or 1.0
-            return scale, (task.max_error / scale) ** 2
+        if task.limits is not None:
+            largest = float(np.max(task.limits, initial=0.0, where=np.isfinite(task.limits)))
+            return largest or 1.0, 1.0
         if not task.is_largest:
             return 1.0, np.inf
         errors = surface_errors(task.mesh, task.original.vertices, task.cover)
@@ -426,6 +428,29 @@ def _checked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.bo
             due=(mesh.n_vertices,),
         )
     return mask
+
+
+def _checked_limits(max_error: ArrayLike | None, original: TriangleMesh) -> FloatArray | None:
+    """Return the largest legal error at each vertex of the original."""
+    if max_error is None:
+        return None
+    limits = np.asarray(max_error, dtype=np.float64)
+    if limits.shape not in ((), (original.n_vertices,)):
+        raise OptionError(
+            "{0} has the shape {shape}; give one number, or one for each of {n} vertices.",
+            "max_error",
+            shape=limits.shape,
+            n=original.n_vertices,
+        )
+    return np.broadcast_to(limits, (original.n_vertices,))
+
+
+def _strictness(limits: FloatArray | None, scale: float) -> FloatArray | None:
+    """Return by how much squared errors count, where the tolerance is the square of a scale."""
+    if limits is None:
+        return None
+    with np.errstate(divide="ignore"):
+        return np.minimum((scale / limits) ** 2, np.finfo(np.float64).max)
 
 
 def _require_sense(

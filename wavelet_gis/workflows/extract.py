@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core.accuracy.between_levels import mesh_of_accuracy, mesh_of_size
 from wavelet_core.accuracy.selective import PartialMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import Cover, surface_errors
+from wavelet_core.refinement.finish import finished_within
 from wavelet_gis.io.formats import RASTER_SUFFIXES, suffix_of
 from wavelet_gis.model.attributes.categories import Categories
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -21,6 +22,13 @@ from wavelet_gis.notes import note
 from wavelet_gis.workflows.exchange import InOtherLibraries
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, warn_of_error_above
 from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
+from wavelet_gis.workflows.tolerance import (
+    MaxError,
+    ZoneErrors,
+    is_by_place,
+    tolerances,
+    zone_errors,
+)
 
 __all__ = ["Surface", "SurfaceErrors", "extract", "measured"]
 
@@ -53,6 +61,8 @@ class Surface(InOtherLibraries):
         The level that it is, or, of a size between two, the finer one.
     errors : SurfaceErrors or None
         At all input points; None for a level of a pyramid that does not tell them.
+    zones : tuple of ZoneErrors
+        Where the tolerance was given by place: the errors by its size, the strictest first.
     """
 
     geo: GeoPyramid
@@ -60,6 +70,7 @@ class Surface(InOtherLibraries):
     vertex_ids: NDArray[np.int64]
     level: int
     errors: SurfaceErrors | None = None
+    zones: tuple[ZoneErrors, ...] = ()
 
     @property
     def file_mesh(self) -> TriangleMesh:
@@ -119,7 +130,12 @@ class Surface(InOtherLibraries):
 
     def figures(self) -> dict[str, Any]:
         """Return size and errors as JSON-able values."""
-        sizes = {"n_vertices": self.mesh.n_vertices, "n_triangles": self.mesh.n_faces}
+        sizes: dict[str, Any] = {
+            "n_vertices": self.mesh.n_vertices,
+            "n_triangles": self.mesh.n_faces,
+        }
+        if self.zones:
+            sizes["zones"] = [zone._asdict() for zone in self.zones]
         if self.errors is None:
             return sizes
         return {**sizes, "rmse": self.errors.rmse, "max_error": self.errors.max_error}
@@ -158,7 +174,11 @@ def extract(
     *,
     level: int | None = None,
     vertices: int | None = None,
-    max_error: float | None = None,
+    max_error: MaxError | None = None,
+    zones: Any = None,
+    zone_field: str | None = None,
+    refine: int | None = 0,
+    progress: Progress | None = None,
 ) -> Surface:
     """Return a surface of a pyramid; with no rule the coarsest level.
 
@@ -170,10 +190,21 @@ def extract(
         0 is the coarsest, the number of levels the input.
     vertices : int, optional
         Instead: just so many.
-    max_error : float, optional
+    max_error : float, path, str, array_like or callable, optional
         Instead: the smallest found with no input vertex farther off, vertically, in the input's
-        unit of z. Points that share x and y with a vertex are farther off by as much as they are
-        apart, which is warned of.
+        unit of z; one distance, or what gives one by place, see
+        `wavelet_gis.workflows.tolerance.tolerances`. Points that share x and y with a vertex are
+        farther off by as much as they are apart, which is warned of.
+    zones : path or GeoDataFrame, optional
+        Polygons with a ``max_error`` of their own.
+    zone_field : str, optional
+        The field of theirs that holds it, by default ``max_error``.
+    refine : int, optional
+        With ``max_error``: rounds that turn edges, move vertices and take out what the tolerance
+        allows, see `wavelet_core.refine`; None for as many as pay. Vertices are then input
+        vertices, height and all.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Returns
     -------
@@ -190,16 +221,45 @@ def extract(
     geo = pyramid_of(data)
     if sum(rule is not None for rule in (level, vertices, max_error)) > 1:
         raise OptionError("give one of {0}, {1} and {2}.", "level", "vertices", "max_error")
+    if zones is not None and (level is not None or vertices is not None):
+        raise OptionError("{0} are of {1}; leave them out.", "zones", "max_error")
     if vertices is not None:
         return _between(geo, mesh_of_size(geo.pyramid, vertices))
-    if max_error is not None:
-        surface = _between(geo, mesh_of_accuracy(geo.pyramid, max_error * geo.frame.z_scale))
-        found = surface.errors.max_error if surface.errors else None
-        warn_of_error_above(geo.source_name, found, None, max_error=max_error)
-        return surface
+    if max_error is not None or zones is not None:
+        return _within(geo, max_error, zones, zone_field, refine, progress)
+    if refine != 0:
+        raise OptionError("{0} is of {1}; give both or none.", "refine", "max_error")
     chosen = level or 0
     mesh = geo.pyramid.mesh(chosen)
     return Surface(geo, mesh, geo.pyramid.vertex_ids(chosen), chosen, _errors_at(geo, chosen))
+
+
+def _within(
+    geo: GeoPyramid,
+    max_error: MaxError | None,
+    zones: Any,
+    zone_field: str | None,
+    refine: int | None,
+    progress: Progress | None,
+) -> Surface:
+    finest, z_scale = geo.pyramid.mesh(geo.pyramid.n_levels), geo.frame.z_scale
+    by_place = is_by_place(max_error, zones)
+    limits = tolerances(geo, finest, max_error, zones, zone_field)
+    if refine == 0:
+        limit = limits * z_scale if by_place else limits[0] * z_scale
+        part = mesh_of_accuracy(geo.pyramid, limit, progress)
+    else:
+        tin = finished_within(
+            geo.pyramid, finest, limits * z_scale, rounds=refine, progress=progress
+        )
+        part = PartialMesh(tin.mesh, tin.vertex_ids, geo.pyramid.n_levels)
+    surface = _between(geo, part)
+    if by_place:
+        rows = zone_errors(part.mesh, part.vertex_ids, finest.vertices, limits, z_scale)
+        return replace(surface, zones=rows)
+    found = surface.errors.max_error if surface.errors else None
+    warn_of_error_above(geo.source_name, found, None, max_error=float(limits[0]))
+    return surface
 
 
 def _between(geo: GeoPyramid, part: PartialMesh) -> Surface:

@@ -14,7 +14,7 @@ from wavelet_core import analyse as core_analyse
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import Cover, cover_of, surface_errors
 from wavelet_core.progress import report
-from wavelet_core.refinement.finish import finished
+from wavelet_core.refinement.finish import finished, finished_within
 from wavelet_core.refinement.refine import Round
 from wavelet_gis._memory import require_memory
 from wavelet_gis.model.points.cloud import PointCloud
@@ -35,6 +35,7 @@ from wavelet_gis.workflows.options import (
     warn_of_error_above,
     working_rules,
 )
+from wavelet_gis.workflows.tolerance import MaxError, is_by_place, tolerances, zone_errors
 
 __all__ = ["Simplified", "simplify"]
 
@@ -148,7 +149,9 @@ def simplify(
     terrain: Terrain,
     *,
     vertices: int | None = None,
-    max_error: float | None = None,
+    max_error: MaxError | None = None,
+    zones: Any = None,
+    zone_field: str | None = None,
     max_rms: float | None = None,
     fit: bool = True,
     refine: int | None = None,
@@ -165,9 +168,14 @@ def simplify(
         From `wavelet_gis.open`.
     vertices : int, optional
         Keep so many vertices.
-    max_error : float, optional
+    max_error : float, path, str, array_like or callable, optional
         Instead: keep so many that no input vertex is farther off, vertically; in the input's unit
-        of z.
+        of z. One distance, or what gives one by place, see
+        `wavelet_gis.workflows.tolerance.tolerances`; vertices are then input vertices.
+    zones : path or GeoDataFrame, optional
+        Polygons with a ``max_error`` of their own.
+    zone_field : str, optional
+        The field of theirs that holds it, by default ``max_error``.
     max_rms : float, optional
         Instead: the same for the root mean square error.
     fit : bool
@@ -198,7 +206,8 @@ def simplify(
     """
     require_terrain(terrain)
     require_memory(terrain.mesh.n_vertices, 1 + terrain.mesh.attributes.shape[1])
-    if sum(rule is not None for rule in (vertices, max_error, max_rms)) != 1:
+    has_max_error = max_error is not None or zones is not None
+    if (vertices is not None) + has_max_error + (max_rms is not None) != 1:
         raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
     if refine is not None and refine < 0:
         raise OptionError("{0} is {given}; give 0 or more rounds.", "refine", given=refine)
@@ -211,6 +220,13 @@ def simplify(
             "keep_points",
         )
     keywords = options_for(terrain, options)
+    limits, largest = None, None
+    if is_by_place(max_error, zones):
+        limits = tolerances(terrain, terrain.mesh, max_error, zones, zone_field)
+        largest = _largest_of(limits, terrain)
+        keywords = _by_largest_error(keywords)
+    elif max_error is not None:
+        largest = float(max_error)  # type: ignore[arg-type]
     if keep_points:
         keywords = _without_update(keywords)
     clock = Clock(on_stage)
@@ -220,7 +236,7 @@ def simplify(
             terrain.mesh,
             progress=part_of(progress, 0.0, 0.6),
             **working_rules(  # type: ignore[arg-type]
-                terrain.frame, target_vertices=vertices, max_error=max_error, max_rms=max_rms
+                terrain.frame, target_vertices=vertices, max_error=largest, max_rms=max_rms
             ),
             **keywords,
         )
@@ -228,27 +244,36 @@ def simplify(
         if options.get("outline_tolerance"):
             note_moved_outline(terrain.mesh, pyramid.mesh(0), options["outline_tolerance"])
     clock.stage("fit")
-    tin = finished(
-        pyramid,
-        terrain.mesh,
-        fit=fit,
-        rounds=refine,
-        keep_points=keep_points,
-        progress=part_of(progress, 0.6, 0.95),
-    )
+    z_scale = terrain.frame.z_scale
+    finishing = part_of(progress, 0.6, 0.95)
+    if limits is not None:
+        rounds = refine if fit else 0
+        tin = finished_within(
+            pyramid, terrain.mesh, limits * z_scale, rounds=rounds, progress=finishing
+        )
+    else:
+        tin = finished(
+            pyramid,
+            terrain.mesh,
+            fit=fit,
+            rounds=refine,
+            keep_points=keep_points,
+            progress=finishing,
+        )
     clock.stage("errors")
     # Of a cloud these are all points of the surface: those merged with a vertex count too.
     points = terrain.points_for_errors()
-    z_scale = terrain.frame.z_scale
     at_vertices = measured(tin.mesh, terrain.mesh.vertices, z_scale)
-    if _is_above(at_vertices.max_error, max_error) or _is_above(at_vertices.rmse, max_rms):
+    if limits is None and (
+        _is_above(at_vertices.max_error, largest) or _is_above(at_vertices.rmse, max_rms)
+    ):
         # A vertex on the outline may have gone unmeasured in a round; the pyramid's level holds.
         tin = finished(pyramid, terrain.mesh, fit=fit, rounds=0, keep_points=keep_points)
         at_vertices = measured(tin.mesh, terrain.mesh.vertices, z_scale)
     is_all = len(points) == terrain.mesh.n_vertices
     errors = at_vertices if is_all else measured(tin.mesh, points, z_scale)
     warn_of_error_above(
-        terrain.name, errors.max_error, errors.rmse, max_error=max_error, max_rms=max_rms
+        terrain.name, errors.max_error, errors.rmse, max_error=largest, max_rms=max_rms
     )
     noted = terrain.with_notes([*terrain.notes, *notes])
     return Simplified(
@@ -257,6 +282,9 @@ def simplify(
         vertex_ids=tin.vertex_ids,
         level=0,
         errors=errors,
+        zones=()
+        if limits is None
+        else zone_errors(tin.mesh, tin.vertex_ids, terrain.mesh.vertices, limits, z_scale),
         terrain=noted,
         is_fitted=tin.is_fitted,
         rounds=tuple(
@@ -266,6 +294,34 @@ def simplify(
         seconds=clock.seconds(),
         along_lines=measured_along_lines(terrain, tin.mesh),
     )
+
+
+def _largest_of(limits: NDArray[np.float64], terrain: Terrain) -> float:
+    """Return the largest tolerance, or what no error can be above."""
+    relief = float(np.ptp(terrain.mesh.vertices[:, 2])) / terrain.frame.z_scale
+    return float(min(limits.max(initial=0.0), relief))
+
+
+def _by_largest_error(keywords: dict[str, Any]) -> dict[str, Any]:
+    """Return the options of an analysis that a tolerance by place can start from."""
+    for option, due in (("norm", "max"), ("update", "none")):
+        if keywords.get(option, due) != due:
+            raise OptionError(
+                "{0} {given!r} does not go with a tolerance that varies by place, which needs "
+                "{due!r}; leave it out.",
+                option,
+                given=keywords[option],
+                due=due,
+            )
+    if "prediction" in keywords or keywords.get("signal", "z") != "z":
+        raise OptionError(
+            "a tolerance that varies by place needs the heights of the input; leave out {0}, {1} "
+            "and {2}.",
+            "design",
+            "prediction",
+            "signal",
+        )
+    return {**keywords, "norm": "max", "update": "none"}
 
 
 def _is_above(found: float, asked: float | None) -> bool:

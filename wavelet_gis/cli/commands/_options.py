@@ -154,7 +154,7 @@ def line_options(arguments: argparse.Namespace) -> dict[str, Any]:
     """Return the shapes that are given; without a tolerance of their own, lines have the TIN's."""
     tolerance = arguments.line_tolerance
     if tolerance is None and (arguments.breaklines or arguments.clip):
-        tolerance = arguments.max_error
+        tolerance = arguments.max_error if isinstance(arguments.max_error, float) else None
     return {
         "breaklines": arguments.breaklines,
         "clip": arguments.clip,
@@ -165,8 +165,48 @@ def line_options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def input_files(arguments: argparse.Namespace) -> tuple[str, ...]:
     """Return every file that is read, none of which an output may replace."""
-    lines = (arguments.breaklines, arguments.clip, arguments.fixed_points)
-    return (arguments.input, *(path for path in lines if path))
+    named = (arguments.breaklines, arguments.clip, arguments.fixed_points)
+    return (arguments.input, *(path for path in named if path), *tolerance_files(arguments))
+
+
+def tolerance_files(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """Return the files that a tolerance by place comes from, and a formula that is none."""
+    named = (getattr(arguments, "zones", None), getattr(arguments, "max_error", None))
+    return tuple(name for name in named if isinstance(name, str))
+
+
+def add_max_error_argument(rule: Any, help_text: str) -> None:
+    """Add the largest error, a number or what gives one by place."""
+    rule.add_argument(
+        "--max-error",
+        type=_number_or_text,
+        metavar="M",
+        help=f"{help_text}; in the unit of z. By place: a raster, or a formula such as "
+        "'max(0.1, 0.02 * slope)' of z and slope (degrees). Points that share x and y with a "
+        "vertex are told of",
+    )
+
+
+def add_zone_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add polygons with a tolerance of their own."""
+    group = parser.add_argument_group("tolerance by place")
+    group.add_argument(
+        "--zones",
+        metavar="FILE",
+        help="polygons with a largest error of their own; --max-error holds outside",
+    )
+    group.add_argument(
+        "--zone-field",
+        metavar="NAME",
+        help="the field of the zones that holds it, max_error by default",
+    )
+
+
+def zone_table(surface: Any, console: Any) -> None:
+    """Print what came out in each zone of a tolerance by place."""
+    if surface.zones:
+        header = ("tolerance", "to", "points", "vertices", "RMSE", "largest error")
+        console.table(header, list(surface.zones))
 
 
 def open_given(arguments: argparse.Namespace) -> Terrain:
@@ -330,6 +370,13 @@ def add_layers_argument(parser: argparse.ArgumentParser, default: str | None = "
         "coarse TIN and the details of the coarser levels, up to 100,000 features (auto, the "
         "default), those of all levels, the coarse TIN only, or none",
     )
+
+
+def _number_or_text(text: str) -> float | str:
+    try:
+        return length(text)
+    except ValueError:
+        return text
 
 
 def _nodata(text: str) -> float | str:

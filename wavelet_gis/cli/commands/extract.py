@@ -5,12 +5,15 @@ from __future__ import annotations
 import argparse
 
 from wavelet_gis.cli.commands._options import (
+    add_max_error_argument,
     add_overwrite_argument,
     add_surface_arguments,
-    length,
+    add_zone_arguments,
     surface_formats,
     surface_options,
     surface_suffixes,
+    tolerance_files,
+    zone_table,
 )
 from wavelet_gis.cli.console import Console
 
@@ -29,12 +32,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     which.add_argument(
         "--vertices", type=int, metavar="N", help="just so many: a level, or part of the step below"
     )
-    which.add_argument(
-        "--max-error",
-        type=length,
-        metavar="M",
-        help="the least with no input vertex further off, vertically; in the unit of z. Points "
-        "that share x and y with a vertex are told of",
+    add_max_error_argument(which, "the least with no input vertex further off, vertically")
+    add_zone_arguments(parser)
+    parser.add_argument(
+        "--refine",
+        type=int,
+        metavar="N",
+        default=0,
+        help="with --max-error: rounds that move and reconnect vertices and take out what the "
+        "tolerance allows; vertices are then input points. By default none",
     )
     parser.add_argument(
         "--categories",
@@ -55,14 +61,21 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
 
     options = surface_options(arguments)
     check_surface_output(
-        arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,), **options
+        arguments.output,
+        overwrite=arguments.overwrite,
+        inputs=(arguments.file, *tolerance_files(arguments)),
+        **options,
     )
-    between = arguments.vertices is not None or arguments.max_error is not None
+    rules = (arguments.vertices, arguments.max_error, arguments.zones)
+    between = any(rule is not None for rule in rules)
     surface = extract(
         load(arguments.file, level=None if between else arguments.level or 0),
         level=arguments.level,
         vertices=arguments.vertices,
         max_error=arguments.max_error,
+        zones=arguments.zones,
+        zone_field=arguments.zone_field,
+        refine=arguments.refine,
     )
     cells = save(
         surface,
@@ -83,4 +96,5 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"level {surface.level}: {figures['n_vertices']:,} vertices, "
         f"{figures['n_triangles']:,} triangles{shape}{errors}; {arguments.output}"
     )
+    zone_table(surface, console)
     console.figures({"output": str(arguments.output), **figures})

@@ -10,9 +10,11 @@ from wavelet_gis.cli.commands._options import (
     INPUTS,
     add_input_arguments,
     add_line_arguments,
+    add_max_error_argument,
     add_overwrite_argument,
     add_surface_arguments,
     add_wavelet_arguments,
+    add_zone_arguments,
     input_files,
     length,
     open_given,
@@ -20,6 +22,7 @@ from wavelet_gis.cli.commands._options import (
     surface_options,
     surface_suffixes,
     wavelet_options,
+    zone_table,
 )
 from wavelet_gis.cli.console import Console
 from wavelet_gis.cli.table_help import names_from
@@ -38,15 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("input", help=INPUTS)
     parser.add_argument("output", help=f"ending in {surface_suffixes()}")
-    rule = parser.add_mutually_exclusive_group(required=True)
+    rule = parser.add_mutually_exclusive_group()
     rule.add_argument("--vertices", type=int, metavar="N", help="keep so many vertices")
-    rule.add_argument(
-        "--max-error",
-        type=length,
-        metavar="M",
-        help="keep so many that no input vertex is further off, vertically; in the unit of z. "
-        "Points that share x and y with a vertex are told of",
-    )
+    add_max_error_argument(rule, "keep so many that no input vertex is further off, vertically")
     rule.add_argument(
         "--rmse",
         dest="max_rms",
@@ -69,6 +66,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_false",
         help="keep the heights of the pyramid's level instead of fitting them to all input points",
     )
+    add_zone_arguments(parser)
     rounds = parser.add_mutually_exclusive_group()
     rounds.add_argument(
         "--refine",
@@ -112,6 +110,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             terrain,
             vertices=arguments.vertices,
             max_error=arguments.max_error,
+            zones=arguments.zones,
+            zone_field=arguments.zone_field,
             max_rms=arguments.max_rms,
             fit=arguments.fit,
             refine=arguments.refine,
@@ -128,6 +128,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"{figures['max_error']:.4g} ({terrain.vertical_unit}) at all input points; "
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
+    zone_table(tin, console)
     if tin.along_lines is not None:
         console.say(line_about(tin.along_lines, terrain.vertical_unit))
     console.figures({"output": str(arguments.output), **figures})

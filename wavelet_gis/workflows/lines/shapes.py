@@ -6,7 +6,6 @@ to the last bit.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -17,19 +16,16 @@ from scipy.spatial import cKDTree
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import cover_of
-from wavelet_gis.crs.frame import CoordinateSystem
-from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, LayerWarning
+from wavelet_gis.errors import InputFileError, LayerWarning
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected, note, warn
+from wavelet_gis.workflows.layer_shapes import LINES, POINTS, POLYGONS, shapes_in_frame
 from wavelet_gis.workflows.lines.constraints import Constraints, constrained, same_place
 
 __all__ = ["terrain_with_shapes"]
 
 FloatArray = NDArray[np.float64]
 Shapes = NDArray[Any]
-
-#: Type ids of shapely, single and multi, and what such shapes are called.
-_POINTS, _LINES, _POLYGONS = ((0, 4), "points"), ((1, 2, 5), "lines"), ((3, 6), "polygons")
 
 #: A terrain whose outline takes this much of its convex hull has no gaps.
 _WHOLE = 1 - 1e-6
@@ -86,15 +82,15 @@ def terrain_with_shapes(
         domain, is_whole = _domain(mesh)
         area, cutter = domain, None
         if clip is not None:
-            cutter = _united(_shapes(terrain, clip, "clip", _POLYGONS))
+            cutter = _united(_shapes(terrain, clip, "clip", POLYGONS))
             area = _polygons_in(domain.intersection(cutter))
             if area.is_empty:
                 raise _beside(terrain, "clip")
         lines = fixed = None
         if breaklines is not None:
-            lines = snap(_lines_in(_shapes(terrain, breaklines, "breaklines", _LINES)))
+            lines = snap(_lines_in(_shapes(terrain, breaklines, "breaklines", LINES)))
         if fixed_points is not None:
-            fixed = snap(_shapes(terrain, fixed_points, "fixed_points", _POINTS))
+            fixed = snap(_shapes(terrain, fixed_points, "fixed_points", POINTS))
         constraints = _cut(terrain, lines, cutter, domain, is_whole)
         if fixed is not None:
             constraints = constraints._replace(points=_points_within(terrain, fixed, area))
@@ -103,84 +99,7 @@ def terrain_with_shapes(
 
 
 def _shapes(terrain: Terrain, data: Any, option: str, kind: tuple[tuple[int, ...], str]) -> Shapes:
-    """Return the shapes of a file or a GeoDataFrame in the working frame; z is NaN for none."""
-    import shapely
-
-    if isinstance(data, str | os.PathLike):
-        from wavelet_gis.io.vector.vector_reader import read_shapes
-
-        name = os.fspath(data)
-        try:
-            shapes, _, wkt = read_shapes(name)
-        except InputFileError as error:
-            if error.options:  # names the option for a layer of the input
-                raise InputFileError(
-                    "{path}: {0} is to be a file of one layer; copy that layer into a file of its "
-                    "own.",
-                    option,
-                    path=name,
-                ) from error
-            raise
-    elif all(hasattr(data, part) for part in ("geometry", "crs", "columns")):
-        name, shapes = type(data).__name__, np.asarray(data.geometry.values, dtype=object)
-        wkt = None if data.crs is None else data.crs.to_wkt()
-    else:
-        raise OptionError(
-            "{0} is a {given}; give a path or a GeoDataFrame.", option, given=type(data).__name__
-        )
-    shapes = shapes[~(shapely.is_missing(shapes) | shapely.is_empty(shapes))]
-    kinds, noun = kind
-    if len(shapes) == 0 or not set(shapely.get_type_id(shapes).tolist()) <= set(kinds):
-        raise InputFileError(
-            "{name}: {0} are to be {noun}, and the layer holds {found}; give a layer of {noun}.",
-            option,
-            name=name,
-            noun=noun,
-            found="none" if len(shapes) == 0 else "others",
-        )
-    move = _into_frame(terrain, name, wkt)
-    return np.asarray(shapely.transform(shapes, move, include_z=True), dtype=object)
-
-
-def _into_frame(terrain: Terrain, name: str, wkt: str | None) -> Callable[[FloatArray], FloatArray]:
-    """Return the map from a layer's coordinates to the working frame."""
-    from wavelet_gis.crs.lookup import coordinate_system
-    from wavelet_gis.crs.projection import projected
-
-    there: CoordinateSystem = coordinate_system(wkt)
-    here = terrain.system
-    is_moved = there.wkt is not None and here.wkt is not None and there.wkt != here.wkt
-    if (there.wkt is None) != (here.wkt is None):
-        warn(
-            CrsWarning,
-            "shapes_taken_as_they_are",
-            "{name}: its CRS is {there} and that of the terrain {here}; x and y are taken as they "
-            "are",
-            stacklevel=4,
-            name=name,
-            there=there.name,
-            here=here.name,
-        )
-
-    def move(coordinates: FloatArray) -> FloatArray:
-        if not np.isfinite(coordinates[:, :2]).all() or np.isinf(coordinates[:, 2]).any():
-            raise InputFileError(
-                "{name}: a coordinate is no finite number; leave that shape out.", name=name
-            )
-        moved = np.array(coordinates, dtype=np.float64)
-        if is_moved:
-            try:
-                moved[:, 0], moved[:, 1] = projected(there, here, *coordinates[:, :2].T)
-            except CrsError as error:
-                raise CrsError(
-                    "{name}: {there} cannot be brought to {here} here; transform the layer first.",
-                    name=name,
-                    there=there.name,
-                    here=here.name,
-                ) from error
-        return terrain.frame.to_local(moved)
-
-    return move
+    return shapes_in_frame(terrain, data, option, kind)[0]
 
 
 def _snapping(mesh: TriangleMesh) -> Callable[[Shapes], Shapes]:
