@@ -14,7 +14,6 @@ from ..errors import MeshError, OptionError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
 from ..mesh.location import surface_errors
-from ..mesh.normalisation import Normalisation
 from ..mesh.triangle_mesh import TriangleMesh
 from ..partition._mutable_level import LevelFigures
 from ..partition.error_guided import DEFAULT_LEVELS, SurfaceRules, analyse_surface
@@ -26,7 +25,7 @@ from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
 from .pyramid import Pyramid
 from .recorded import Recorder
-from .signal import SIGNALS
+from .signal import SIGNALS, Normalisation
 from .step import Step, analyse_level
 
 #: Share of the vertices that one level is expected to keep, for the progress bar alone.
@@ -117,8 +116,8 @@ def analyse(
         outline vertex goes only where the outline runs straight. Input vertices that a level does
         not cover any more count with their error at the nearest place of its outline.
     record : bool
-        Keep what tells the pyramid in a file (:attr:`Pyramid.told`), which takes a third more time
-        and is worked out anew by who writes one otherwise. There is none but for
+        Keep what tells the pyramid in a file (:attr:`Pyramid.told`), which takes half as much time
+        again and is otherwise worked out by whoever writes the file. There is none but for
         ``partition="surface"`` with its own filters.
 
     Returns

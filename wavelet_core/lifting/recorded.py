@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 
 from .._validate import FloatArray, frozen
 from ..errors import PyramidError
-from ..mesh.normalisation import Normalisation
 from ..mesh.triangle_mesh import TriangleMesh
 from ..partition._mutable_level import HEIGHT_STEP, CollapseStep, SurfaceLevel
 from ..partition.questions import Answers, Collapses, Writer, ask
@@ -28,6 +27,7 @@ from ..partition.recorded import Manner, RecordedLevel, Start, record, replay, t
 from ..partition.stopping import StopRecord
 from ..progress import Progress, report
 from .pyramid import Pyramid, PyramidPart
+from .signal import Normalisation
 from .step import Step
 
 __all__ = [
