@@ -46,6 +46,7 @@ ROOMS = {
         "products",
         "io",
         "workflows",
+        "tiles",
         "report",
         "cli",
     ),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from wavelet_gis.report.page import report_page
+    from wavelet_gis.tiles.globe.tileset import Tileset, terrain_tiles
     from wavelet_gis.workflows.analyse import Analysis, analyse
     from wavelet_gis.workflows.details import Details, details
     from wavelet_gis.workflows.extract import Surface, extract
@@ -38,6 +39,7 @@ __all__ = [
     "Reconstruction",
     "Simplified",
     "Surface",
+    "Tileset",
     "analyse",
     "classify",
     "cluster",
@@ -52,6 +54,7 @@ __all__ = [
     "report_page",
     "save",
     "simplify",
+    "terrain_tiles",
 ]
 
 #: Where each public name is, and what it is called there.
@@ -63,6 +66,7 @@ _HOMES = {
     "Reconstruction": "workflows.reconstruct:Reconstruction",
     "Simplified": "workflows.simplify:Simplified",
     "Surface": "workflows.extract:Surface",
+    "Tileset": "tiles.globe.tileset:Tileset",
     "analyse": "workflows.analyse:analyse",
     "classify": "workflows.learning.cluster:classify",
     "cluster": "workflows.learning.cluster:cluster",
@@ -77,6 +81,7 @@ _HOMES = {
     "report_page": "report.page:report_page",
     "save": "workflows.save:save",
     "simplify": "workflows.simplify:simplify",
+    "terrain_tiles": "tiles.globe.tileset:terrain_tiles",
 }
 
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 __all__ = [
     "CLOUD_SUFFIXES",
+    "FOLDER_RASTER_SUFFIXES",
     "MESH_FORMATS",
     "MESH_SUFFIXES",
     "PICTURE_SUFFIXES",
@@ -115,6 +116,9 @@ RASTER_SUFFIXES = tuple(row.suffix for row in RASTER_FORMATS)
 
 #: What is read and written with laspy.
 CLOUD_SUFFIXES = (".las", ".laz")
+
+#: By these, rasters are found in a folder; those that are named may have any.
+FOLDER_RASTER_SUFFIXES = (".tif", ".tiff", ".vrt", ".img", ".asc", ".bil", ".flt", ".hgt", ".dem")
 
 #: Tables of points as text: x, y, z and attributes by column.
 POINT_TABLE_SUFFIXES = (".csv", ".xyz")

@@ -5,13 +5,28 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from wavelet_gis.errors import InputFileError, OutputFileError
+from wavelet_gis.io.formats import (
+    CLOUD_SUFFIXES,
+    FOLDER_RASTER_SUFFIXES,
+    any_of,
+    suffix_of,
+)
 
-__all__ = ["MAX_DATABASE_NAME", "file_of", "gdal_path", "is_utf8", "plain_folder", "readable"]
+__all__ = [
+    "MAX_DATABASE_NAME",
+    "file_of",
+    "files_of",
+    "gdal_path",
+    "is_utf8",
+    "plain_folder",
+    "readable",
+    "told_as_one",
+]
 
 #: Longest path, in bytes, that SQLite opens with room for its ``-journal``; its own limit is 512.
 MAX_DATABASE_NAME = 500
@@ -51,6 +66,66 @@ def file_of(name: str | os.PathLike[str]) -> str | None:
         for stop in range(len(parts), start, -1)
     ]
     return next((run for run in runs if os.path.isfile(run)), None)
+
+
+def files_of(
+    data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+) -> list[str]:
+    """Return the files that an input is: one, several, or the terrain files in a folder.
+
+    Parameters
+    ----------
+    data : path or sequence of path
+        Each a file or a folder. In a folder, LAS and LAZ files count, or else rasters, by their
+        suffix and in the order of their names.
+
+    Raises
+    ------
+    InputFileError
+        A folder with neither or both, no file at all, or one that is named twice.
+    """
+    given = [data] if isinstance(data, str | os.PathLike) else list(data)
+    if not given:
+        raise InputFileError("there is no input; name a file or a folder.")
+    found: list[str] = []
+    for name in (os.fspath(one) for one in given):
+        found += _in_folder(name) if os.path.isdir(name) else [name]
+    seen: set[str] = set()
+    for name in found if found[1:] else ():
+        real = os.path.realpath(name)
+        if real in seen:
+            raise InputFileError(f"{name}: this file is named twice; name it once.")
+        seen.add(real)
+    return found
+
+
+def _in_folder(name: str) -> list[str]:
+    entries = sorted(entry for entry in os.listdir(name) if not entry.startswith("."))
+    clouds, rasters = (
+        [os.path.join(name, entry) for entry in entries if suffix_of(entry) in suffixes]
+        for suffixes in (CLOUD_SUFFIXES, FOLDER_RASTER_SUFFIXES)
+    )
+    if clouds and rasters:
+        raise InputFileError(
+            f"{name}: this folder holds point clouds and rasters; name those of one kind."
+        )
+    if not clouds and not rasters:
+        raise InputFileError(
+            f"{name}: this folder holds no file ending in "
+            f"{any_of((*CLOUD_SUFFIXES, *FOLDER_RASTER_SUFFIXES))}; name the files."
+        )
+    return clouds or rasters
+
+
+def told_as_one(files: Sequence[str]) -> str:
+    """Return the name of several files for messages.
+
+    Examples
+    --------
+    >>> told_as_one(["a.laz"]), told_as_one(["a.laz", "b.laz", "c.laz"])
+    ('a.laz', 'a.laz and 2 more')
+    """
+    return files[0] if len(files) == 1 else f"{files[0]} and {len(files) - 1} more"
 
 
 def gdal_path(name: str | os.PathLike[str]) -> Path | str:

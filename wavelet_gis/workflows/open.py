@@ -22,7 +22,7 @@ from wavelet_gis.io.formats import (
     VECTOR_SUFFIXES,
     suffix_of,
 )
-from wavelet_gis.io.names import readable
+from wavelet_gis.io.names import files_of, readable, told_as_one
 from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.origin import ORIGINS
@@ -40,7 +40,16 @@ from wavelet_gis.workflows.input_options import (
     require_meaning,
 )
 
-__all__ = ["load", "open_data", "open_input", "open_terrain", "origin_kind"]
+__all__ = [
+    "load",
+    "open_data",
+    "open_input",
+    "open_pyramid_or_input",
+    "open_terrain",
+    "origin_kind",
+]
+
+Path = str | os.PathLike[str]
 
 #: Beyond it a plane is told to be untrue: the same error that a frame for degrees may have.
 LARGEST_SCALE_ERROR = MAX_DISTORTION
@@ -50,7 +59,7 @@ EVEN_SPACING = 1e-3
 
 
 def open_terrain(
-    path: str | os.PathLike[str],
+    path: Path | Sequence[Path],
     *,
     band: int | None = None,
     attributes: Sequence[str] = (),
@@ -67,12 +76,12 @@ def open_terrain(
     max_edge: float | Literal["auto"] | None = None,
     concave: bool = False,
 ) -> Terrain:
-    """Return the terrain in a raster or a LAS file.
+    """Return the terrain in a raster or a LAS file, or in several that are parts of one.
 
     Parameters
     ----------
-    path : path
-        ``.las`` and ``.laz`` are read with laspy, all else with GDAL.
+    path : path or sequence of path
+        ``.las`` and ``.laz`` are read with laspy, all else with GDAL; see `open_data` for several.
     band : int, optional
         Of a raster, from 1.
     attributes, classes, carry, keep_noise, keep_withheld
@@ -103,23 +112,28 @@ def open_terrain(
     from wavelet_gis.crs.lookup import coordinate_system
 
     override = coordinate_system(crs) if crs else None
-    if suffix_of(path) in CLOUD_SUFFIXES:
-        from wavelet_gis.io.las import read_cloud
+    files = files_of(path)
+    name = readable(told_as_one(files))
+    free = {"any_crs": override is not None, "any_unit": vertical_unit is not None}
+    if suffix_of(files[0]) in CLOUD_SUFFIXES:
+        from wavelet_gis.io.las import read_cloud, read_clouds
 
-        require_meaning(path, CLOUD, {"band": band, "nodata": nodata})
-        cloud, place = read_cloud(
-            path,
-            attributes=attributes,
-            classes=classes,
-            carry=carry,
-            keep_noise=keep_noise,
-            keep_withheld=keep_withheld,
+        require_meaning(name, CLOUD, {"band": band, "nodata": nodata})
+        options: dict[str, Any] = {
+            "attributes": attributes,
+            "classes": classes,
+            "carry": carry,
+            "keep_noise": keep_noise,
+            "keep_withheld": keep_withheld,
+        }
+        cloud, place = (
+            read_clouds(files, **free, **options) if files[1:] else read_cloud(files[0], **options)
         )
         if class_channels:
             cloud = one_channel_per_category(cloud)
         system = override or coordinate_system(place.wkt)
         return terrain_of_cloud(
-            readable(path),
+            name,
             cloud,
             system,
             vertical_unit or place.vertical_unit,
@@ -128,10 +142,10 @@ def open_terrain(
             max_edge=max_edge,
             concave=concave,
         )
-    from wavelet_gis.io.raster import read_dem
+    from wavelet_gis.io.raster import read_dem, read_dems
 
     require_meaning(
-        path,
+        name,
         RASTER,
         {
             "attributes": attributes,
@@ -145,10 +159,11 @@ def open_terrain(
             "concave": concave,
         },
     )
-    dem, place = read_dem(path, band=band, nodata=nodata, offline=offline)
+    options = {"band": band, "nodata": nodata, "offline": offline}
+    dem, place = read_dems(files, **free, **options) if files[1:] else read_dem(files[0], **options)
     system = override or coordinate_system(place.wkt)
     unit = vertical_unit or _known_unit(place.vertical_unit)
-    return terrain_of_dem(readable(path), dem, system, unit)
+    return terrain_of_dem(name, dem, system, unit)
 
 
 def _tell_of_scale(terrain: Terrain) -> None:
@@ -195,10 +210,13 @@ def open_data(
 
     Parameters
     ----------
-    data : path or object
+    data : path, sequence of path, or object
         A raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or in a table
         (``.csv``, ``.xyz``); a TIN as a layer of triangles; a pyramid file. Or an open rasterio
         dataset, an xarray DataArray, a GeoDataFrame, a `TriangleMesh`, a `Dem`.
+        Several rasters of one grid, or LAS files of one kind, or a folder of such, are one terrain:
+        the mosaic, or the points of all, which is also what the pyramid gives back. Where rasters
+        overlap, the first with data counts; a point record that two files have counts once.
     layer, z_field : str, optional
         Of a vector file: the layer, and the field with the elevation where points have no z.
     breaklines, clip, fixed_points : path or GeoDataFrame, optional
@@ -230,6 +248,9 @@ def open_data(
         "fixed_points": fixed_points,
         "line_tolerance": line_tolerance,
     }
+    is_several = isinstance(data, list | tuple) and len(data) > 0
+    if is_several and all(isinstance(one, str | os.PathLike) for one in data):
+        return open_input(data, layer=layer, z_field=z_field, **shapes, **options)
     if isinstance(data, str | os.PathLike):
         if suffix_of(data) == PYRAMID_SUFFIX and _holds_pyramid(data):
             require_meaning(data, PYRAMID, shapes)
@@ -242,7 +263,7 @@ def open_data(
 
 
 def open_input(
-    path: str | os.PathLike[str],
+    path: Path | Sequence[Path],
     *,
     layer: str | None = None,
     z_field: str | None = None,
@@ -252,12 +273,12 @@ def open_input(
     line_tolerance: float | None = None,
     **options: Any,
 ) -> Terrain:
-    """Return the terrain in a file other than a pyramid; see `open_data`.
+    """Return the terrain in a file other than a pyramid, or in several; see `open_data`.
 
     Parameters
     ----------
-    path : path
-        The file.
+    path : path or sequence of path
+        The file, files or folder.
     layer, z_field, breaklines, clip, fixed_points, line_tolerance, **options
         See `open_data`.
 
@@ -273,22 +294,77 @@ def open_input(
         "line_tolerance": line_tolerance,
     }
     with collected() as notes:
-        suffix = suffix_of(path)
-        if suffix == PYRAMID_SUFFIX and layer is None and _holds_pyramid(path):
-            raise InputFileError(
-                "{path}: this is a pyramid already; give its input, or, to analyse one of its "
-                "layers, name it by {0}.",
-                "layer",
-                path=path,
-            )
-        if suffix in (*VECTOR_SUFFIXES, *POINT_TABLE_SUFFIXES) and os.path.isfile(path):
-            terrain = _raster_or_vector(path, layer, z_field, options, shapes)
+        files = files_of(path)
+        if files[1:]:
+            require_meaning(told_as_one(files), CLOUD, {"layer": layer, "z_field": z_field})
+            terrain = open_terrain(files, **options)
         else:
-            kind = CLOUD if suffix in CLOUD_SUFFIXES else RASTER
-            require_meaning(path, kind, {"layer": layer, "z_field": z_field})
-            terrain = open_terrain(path, **options)
+            terrain = _terrain_of_file(files[0], layer, z_field, options, shapes)
         _tell_of_scale(terrain)
     return _with_shapes(terrain.with_notes(notes), shapes)
+
+
+def _terrain_of_file(
+    path: str,
+    layer: str | None,
+    z_field: str | None,
+    options: dict[str, Any],
+    shapes: dict[str, Any],
+) -> Terrain:
+    suffix = suffix_of(path)
+    if suffix == PYRAMID_SUFFIX and layer is None and _holds_pyramid(path):
+        raise InputFileError(
+            "{path}: this is a pyramid already; give its input, or, to analyse one of its layers, "
+            "name it by {0}.",
+            "layer",
+            path=path,
+        )
+    if suffix in (*VECTOR_SUFFIXES, *POINT_TABLE_SUFFIXES) and os.path.isfile(path):
+        return _raster_or_vector(path, layer, z_field, options, shapes)
+    kind = CLOUD if suffix in CLOUD_SUFFIXES else RASTER
+    require_meaning(path, kind, {"layer": layer, "z_field": z_field})
+    return open_terrain(path, **options)
+
+
+def open_pyramid_or_input(
+    path: Path | Sequence[Path], *, level: int | None = None, **options: Any
+) -> Terrain | Analysis:
+    """Return what a file holds, for uses that take a pyramid as well as any other terrain.
+
+    Parameters
+    ----------
+    path : path or sequence of path
+        The file; or several, or a folder, of other terrain.
+    level : int, optional
+        Of a pyramid: the finest that is wanted; see `load`.
+    **options
+        See `open_data`.
+
+    Raises
+    ------
+    InputFileError
+        Options that this kind of input does not have, or what the readers refuse.
+    """
+    files = files_of(path)
+    is_one = len(files) == 1 and suffix_of(files[0]) == PYRAMID_SUFFIX
+    if not is_one or options.get("layer") or not _holds_pyramid(files[0]):
+        if level is not None:
+            raise InputFileError(
+                "{path}: this is no pyramid, and {0} is for one; leave it out.",
+                "level",
+                path=told_as_one(files),
+            )
+        return open_input(path, **options)
+    path = files[0]
+    require_meaning(path, PYRAMID, options)
+    for name in ("crs", "vertical_unit"):
+        if options.get(name):
+            raise InputFileError(
+                "{path}: a pyramid knows its own, and {0} is for other input; leave it out.",
+                name,
+                path=path,
+            )
+    return load(path, level=level)
 
 
 def _with_shapes(terrain: Terrain, shapes: dict[str, Any]) -> Terrain:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = [
     "INPUTS",
     "add_input_arguments",
+    "add_inputs_argument",
     "add_line_arguments",
     "add_overwrite_argument",
     "add_surface_arguments",
@@ -30,6 +31,7 @@ __all__ = [
     "line_options",
     "names",
     "open_given",
+    "reading_options",
     "surface_formats",
     "surface_options",
     "surface_suffixes",
@@ -40,6 +42,43 @@ __all__ = [
 INPUTS = (
     "a raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or a table (.csv, "
     ".xyz); a TIN as a layer of triangles"
+)
+
+
+#: What several files may be, for help.
+SEVERAL = "; or several rasters, or LAS files, or a folder of them, that are parts of one"
+
+
+def add_inputs_argument(parser: argparse.ArgumentParser, others: str = "") -> None:
+    """Add one input or several.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+    others : str
+        What the command takes besides, for help.
+    """
+    parser.add_argument("input", nargs="+", help=f"{others}{INPUTS}{SEVERAL}")
+
+
+#: What tells how an input is read.
+_READING = (
+    "layer",
+    "z_field",
+    "band",
+    "attributes",
+    "classes",
+    "carry",
+    "class_channels",
+    "crs",
+    "vertical_unit",
+    "nodata",
+    "offline",
+    "keep_noise",
+    "keep_withheld",
+    "duplicates",
+    "max_edge",
+    "concave",
 )
 
 
@@ -165,8 +204,11 @@ def line_options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def input_files(arguments: argparse.Namespace) -> tuple[str, ...]:
     """Return every file that is read, none of which an output may replace."""
+    from wavelet_gis.io.names import files_of
+
     named = (arguments.breaklines, arguments.clip, arguments.fixed_points)
-    return (arguments.input, *(path for path in named if path), *tolerance_files(arguments))
+    files = files_of(arguments.input)
+    return (*files, *(path for path in named if path), *tolerance_files(arguments))
 
 
 def tolerance_files(arguments: argparse.Namespace) -> tuple[str, ...]:
@@ -213,26 +255,12 @@ def open_given(arguments: argparse.Namespace) -> Terrain:
     """Return the terrain that the input arguments name."""
     from wavelet_gis.workflows.open import open_input
 
-    return open_input(
-        arguments.input,
-        layer=arguments.layer,
-        z_field=arguments.z_field,
-        band=arguments.band,
-        attributes=arguments.attributes,
-        classes=arguments.classes,
-        carry=arguments.carry,
-        class_channels=arguments.class_channels,
-        crs=arguments.crs,
-        vertical_unit=arguments.vertical_unit,
-        nodata=arguments.nodata,
-        offline=arguments.offline,
-        keep_noise=arguments.keep_noise,
-        keep_withheld=arguments.keep_withheld,
-        duplicates=arguments.duplicates,
-        max_edge=arguments.max_edge,
-        concave=arguments.concave,
-        **line_options(arguments),
-    )
+    return open_input(arguments.input, **reading_options(arguments), **line_options(arguments))
+
+
+def reading_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """Return what `add_input_arguments` asks, by the names of `wavelet_gis.open`."""
+    return {name: getattr(arguments, name) for name in _READING}
 
 
 def add_wavelet_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,8 +6,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 from wavelet_gis.cli.commands._options import (
-    INPUTS,
     add_input_arguments,
+    add_inputs_argument,
     add_layers_argument,
     add_line_arguments,
     add_overwrite_argument,
@@ -28,7 +28,7 @@ HELP = "Turn a DEM, a point cloud or a TIN into a reversible wavelet pyramid in 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("input", help=INPUTS)
+    add_inputs_argument(parser)
     parser.add_argument("output", help="the pyramid file, ending in .gpkg")
     parser.add_argument("--levels", type=int, metavar="N", help="at most so many levels")
     parser.add_argument(

@@ -7,8 +7,8 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from wavelet_gis.cli.commands._options import (
-    INPUTS,
     add_input_arguments,
+    add_inputs_argument,
     add_line_arguments,
     add_max_error_argument,
     add_overwrite_argument,
@@ -39,7 +39,7 @@ HELP = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("input", help=INPUTS)
+    add_inputs_argument(parser)
     parser.add_argument("output", help=f"ending in {surface_suffixes()}")
     rule = parser.add_mutually_exclusive_group()
     rule.add_argument("--vertices", type=int, metavar="N", help="keep so many vertices")

@@ -2,5 +2,6 @@
 
 from wavelet_gis.io.las.cloud_reader import ALIASES, NOISE_CLASSES, read_cloud
 from wavelet_gis.io.las.cloud_writer import write_cloud
+from wavelet_gis.io.las.several import read_clouds
 
-__all__ = ["ALIASES", "NOISE_CLASSES", "read_cloud", "write_cloud"]
+__all__ = ["ALIASES", "NOISE_CLASSES", "read_cloud", "read_clouds", "write_cloud"]

@@ -2,5 +2,6 @@
 
 from wavelet_gis.io.raster.raster_reader import NO_TAG, read_dem
 from wavelet_gis.io.raster.raster_writer import write_bands, write_cog, write_dem
+from wavelet_gis.io.raster.several import read_dems
 
-__all__ = ["NO_TAG", "read_dem", "write_bands", "write_cog", "write_dem"]
+__all__ = ["NO_TAG", "read_dem", "read_dems", "write_bands", "write_cog", "write_dem"]

@@ -1,0 +1,313 @@
+"""Tiles for globes, read by a decoder of the tests' own: no crack anywhere, errors as promised."""
+
+import json
+from bisect import bisect_right
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gis.samples import hills, write_las, write_tif
+from pyproj import Transformer
+from tools.quantized_mesh_reader import STEPS, bounds_of, decode
+
+import wavelet_gis as wg
+from wavelet_core.errors import OptionError
+from wavelet_gis.errors import CrsError, OutputFileError, TerrainWarning
+
+
+def read_set(folder):
+    """Return layer.json and all tiles by (z, x, y)."""
+    layer = json.loads((folder / "layer.json").read_text("utf-8"))
+    tiles = {}
+    for path in folder.rglob("*.terrain"):
+        z, x = path.parent.parent.name, path.parent.name
+        tiles[int(z), int(x), int(path.stem)] = decode(path.read_bytes())
+    return layer, tiles
+
+
+@pytest.fixture(scope="module")
+def utm_set(tmp_path_factory):
+    """A DEM of hills in UTM with a hole, tiled finely enough to have many tiles."""
+    folder = tmp_path_factory.mktemp("globe")
+    values = hills(150, 170)
+    values[60:64, 40:47] = -9999.0
+    path = write_tif(folder / "dem.tif", values, nodata=-9999.0)
+    figures = wg.terrain_tiles(wg.open(path), folder / "out", zoom=16, max_error=0.8, normals=True)
+    rows, columns = np.nonzero(values != -9999.0)
+    x, y = 500000.0 + 10 * (columns + 0.5), 5100000.0 - 10 * (rows + 0.5)
+    to_degrees = Transformer.from_crs("EPSG:32632", "EPSG:4326", always_xy=True)
+    longitude, latitude = to_degrees.transform(x, y)
+    points = np.column_stack([longitude, latitude, values[rows, columns]])
+    return (*read_set(folder / "out"), figures, points)
+
+
+def test_every_tile_of_the_layer_is_there_and_no_other(utm_set):
+    layer, tiles, figures, _ = utm_set
+    listed = {
+        (z, x, y)
+        for z, ranges in enumerate(layer["available"])
+        for r in ranges
+        for x in range(r["startX"], r["endX"] + 1)
+        for y in range(r["startY"], r["endY"] + 1)
+    }
+    assert listed == set(tiles)
+    assert {(0, 0, 0), (0, 1, 0)} <= listed
+    assert layer["maxzoom"] == 16 == len(layer["available"]) - 1
+    assert layer["format"] == "quantized-mesh-1.0"
+    assert layer["scheme"] == "tms"
+    assert figures.figures()["n_tiles"] == len(tiles)
+
+
+def test_tiles_have_all_children_or_none(utm_set):
+    _, tiles, _, _ = utm_set
+    for z, x, y in tiles:
+        children = {(z + 1, 2 * x + a, 2 * y + b) for a in (0, 1) for b in (0, 1)}
+        assert len(children & set(tiles)) in (0, 4)
+
+
+def test_every_tile_is_a_whole_square_without_folds(utm_set):
+    _, tiles, _, _ = utm_set
+    for key, tile in tiles.items():
+        a, b, c = tile.triangles.T
+        u, v = tile.u, tile.v
+        doubled = (u[b] - u[a]) * (v[c] - v[a]) - (v[b] - v[a]) * (u[c] - u[a])
+        assert doubled.min() > 0, key
+        assert doubled.sum() == 2 * STEPS**2, key
+        assert set(tile.triangles.ravel().tolist()) == set(range(len(u)))
+        for name, numbers, value in (
+            ("west", u, 0),
+            ("south", v, 0),
+            ("east", u, STEPS),
+            ("north", v, STEPS),
+        ):
+            assert sorted(tile.edges[name].tolist()) == np.flatnonzero(numbers == value).tolist()
+
+
+def assert_neighbours_meet(tiles):
+    """Assert that both tiles beside an edge have the same vertices on it; return how many edges."""
+    n_compared = 0
+    for (z, x, y), tile in tiles.items():
+        for neighbour, mine, theirs in (
+            ((z, x + 1, y), "east", "west"),
+            ((z, x, y + 1), "north", "south"),
+        ):
+            if neighbour in tiles:
+                assert tile.edge(mine) == tiles[neighbour].edge(theirs), (z, x, y, mine)
+                n_compared += 1
+    return n_compared
+
+
+def test_edges_of_neighbours_are_the_same_to_the_bit(utm_set):
+    assert assert_neighbours_meet(utm_set[1]) > 50
+
+
+def along_parent(tiles, z, x, y, name):
+    """Return the chain of an edge, made of the tiles of the next zoom, in the parent's steps."""
+    chain = []
+    for half in (0, 1):
+        child = {
+            "west": (z + 1, 2 * x, 2 * y + half),
+            "east": (z + 1, 2 * x + 1, 2 * y + half),
+            "south": (z + 1, 2 * x + half, 2 * y),
+            "north": (z + 1, 2 * x + half, 2 * y + 1),
+        }[name]
+        chain += [((at + half * STEPS) / 2, height) for at, height in tiles[child].edge(name)]
+    return chain
+
+
+def height_at(chain, at):
+    places = [place for place, _ in chain]
+    k = min(max(bisect_right(places, at), 1), len(chain) - 1)
+    (a, low), (b, high) = chain[k - 1], chain[k]
+    return low if a == b else low + (at - a) / (b - a) * (high - low)
+
+
+def test_edges_of_parents_and_children_are_the_same_line(utm_set):
+    """To the bit for six zooms: 32767 is odd, so no coarse tile has a vertex at a fine corner."""
+    layer, tiles, _, _ = utm_set
+    n_uneven = 0
+    for z, x, y in tiles:
+        if z < layer["maxzoom"] - 5 or (z + 1, 2 * x, 2 * y) not in tiles:
+            continue
+        for name in ("west", "south", "east", "north"):
+            parent, children = tiles[z, x, y].edge(name), along_parent(tiles, z, x, y, name)
+            for at, height in parent:
+                assert height_at(children, at) == height, (z, x, y, name, at)
+            for at, height in children:
+                assert height_at(parent, at) == height, (z, x, y, name, at)
+            n_uneven += len({height for _, height in parent}) > 2
+    assert n_uneven > 10
+
+
+def heights_on(tile, key, points):
+    """Return heights of a tile under points by brute force, NaN beside it."""
+    west, south, east, north = bounds_of(*key)
+    pu = (points[:, 0] - west) / (east - west) * STEPS
+    pv = (points[:, 1] - south) / (north - south) * STEPS
+    found = np.full(len(points), np.nan)
+    heights = tile.heights()
+    for a, b, c in tile.triangles:
+        (ua, va), (ub, vb), (uc, vc) = ((float(tile.u[k]), float(tile.v[k])) for k in (a, b, c))
+        near = (pu >= min(ua, ub, uc)) & (pu <= max(ua, ub, uc))
+        near &= (pv >= min(va, vb, vc)) & (pv <= max(va, vb, vc))
+        at = np.flatnonzero(near)
+        area = (ub - ua) * (vc - va) - (vb - va) * (uc - ua)
+        wb = ((pu[at] - ua) * (vc - va) - (pv[at] - va) * (uc - ua)) / area
+        wc = ((ub - ua) * (pv[at] - va) - (vb - va) * (pu[at] - ua)) / area
+        inside = (wb >= -1e-12) & (wc >= -1e-12) & (wb + wc <= 1 + 1e-12)
+        found[at[inside]] = (
+            heights[a] + wb * (heights[b] - heights[a]) + wc * (heights[c] - heights[a])
+        )[inside]
+    return found
+
+
+def test_errors_at_all_cells_are_as_promised_and_halve(utm_set):
+    _, tiles, figures, points = utm_set
+    for zoom in figures.zooms:
+        errors = []
+        for key, tile in tiles.items():
+            west, south, east, north = bounds_of(*key)
+            inside = (points[:, 0] >= west) & (points[:, 0] < east)
+            inside &= (points[:, 1] >= south) & (points[:, 1] < north)
+            if key[0] == zoom.zoom and inside.any():
+                mine = points[inside]
+                errors.append(np.abs(heights_on(tile, key, mine) - mine[:, 2]))
+        errors = np.concatenate(errors)
+        assert len(errors) == len(points)
+        assert zoom.promised == 0.8 * 2 ** (16 - zoom.zoom)
+        assert errors.max() <= zoom.promised
+        assert errors.max() == pytest.approx(zoom.max_error, abs=1e-6)
+
+
+def test_headers_hold_what_viewers_hide_tiles_by(utm_set):
+    _, tiles, _, _ = utm_set
+    axes = np.array([6378137.0, 6378137.0, 6356752.314245179])
+    to_centre = Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
+    for key, tile in tiles.items():
+        west, south, east, north = bounds_of(*key)
+        longitude = west + tile.u / STEPS * (east - west)
+        latitude = south + tile.v / STEPS * (north - south)
+        places = np.column_stack(to_centre.transform(longitude, latitude, tile.heights()))
+        assert np.linalg.norm(places - tile.sphere, axis=1).max() <= tile.radius * (1 + 1e-9)
+        assert tile.low <= tile.heights().min()
+        assert tile.heights().max() <= tile.high
+        if key[0] > 4:  # the point is beyond every vertex's horizon plane
+            scaled, point = places / axes, tile.horizon
+            assert (scaled @ point >= 1 - 1e-6).all() or np.linalg.norm(point) >= 1
+
+
+def test_level_ground_stays_near_the_round_earth(utm_set):
+    """Chords of the fill, which is level, keep by the ellipsoid, as errors at points do."""
+    _, tiles, figures, _ = utm_set
+    to_centre = Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
+    back = Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True)
+    promised = {zoom.zoom: zoom.promised for zoom in figures.zooms}
+    for key, tile in tiles.items():
+        if tile.heights().max() > 0:
+            continue
+        west, south, east, north = bounds_of(*key)
+        longitude = west + tile.u / STEPS * (east - west)
+        latitude = south + tile.v / STEPS * (north - south)
+        places = np.column_stack(to_centre.transform(longitude, latitude, tile.heights()))
+        middle = places[tile.triangles].mean(axis=1)
+        heights = back.transform(*middle.T)[2]
+        assert np.abs(heights).max() <= 2 * promised[key[0]], key
+
+
+def test_normals_agree_where_tiles_meet_and_point_up(utm_set):
+    layer, tiles, _, _ = utm_set
+    assert layer["extensions"] == ["octvertexnormals"]
+    n_compared = 0
+    for (z, x, y), tile in tiles.items():
+        octs = np.frombuffer(tile.extensions[1], np.uint8).reshape(-1, 2)
+        assert len(octs) == len(tile.u)
+        flat = octs / 255.0 * 2 - 1
+        up = 1 - np.abs(flat).sum(axis=1)
+        folded = np.where(
+            up[:, None] < 0, (1 - np.abs(flat[:, ::-1])) * np.where(flat < 0, -1, 1), flat
+        )
+        normals = np.column_stack([folded, up])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        if z > 4:
+            assert (normals @ (tile.centre / np.linalg.norm(tile.centre)) > 0).all()
+        other = tiles.get((z, x + 1, y))
+        if other is not None:
+            theirs = np.frombuffer(other.extensions[1], np.uint8).reshape(-1, 2)
+            mine_at, their_at = tile.edges["east"], other.edges["west"]
+            mine = octs[mine_at[np.argsort(tile.v[mine_at])]]
+            yours = theirs[their_at[np.argsort(other.v[their_at])]]
+            assert np.abs(mine.astype(int) - yours).max() <= 1
+            n_compared += 1
+    assert n_compared > 20
+
+
+def test_the_same_input_gives_the_same_bytes(tmp_path):
+    path = write_tif(tmp_path / "dem.tif", hills(60, 50))
+    for name in ("a", "b"):
+        wg.terrain_tiles(wg.open(path), tmp_path / name, max_error=1.0)
+    first = {p.relative_to(tmp_path / "a"): p.read_bytes() for p in (tmp_path / "a").rglob("*.*")}
+    assert first == {
+        p.relative_to(tmp_path / "b"): p.read_bytes() for p in (tmp_path / "b").rglob("*.*")
+    }
+
+
+def test_a_dem_on_both_sides_of_greenwich_and_the_equator(tmp_path):
+    """Lines that every zoom has; the coarse tiles on them have the vertices of the finest."""
+    import rasterio
+
+    transform = rasterio.Affine(0.001, 0, -0.06, 0, -0.001, 0.05)
+    path = write_tif(tmp_path / "dem.tif", hills(100, 120), crs="EPSG:4326", transform=transform)
+    figures = wg.terrain_tiles(wg.open(path), tmp_path / "out", max_error=5.0)
+    _, tiles = read_set(tmp_path / "out")
+    assert assert_neighbours_meet(tiles) > 30
+    for zoom in figures.zooms:
+        assert zoom.max_error <= zoom.promised
+
+
+def test_points_and_levels_of_pyramids(tmp_path):
+    rng = np.random.default_rng(3)
+    x, y = rng.uniform(0, 400, (2, 3000))
+    z = 50 + 8 * np.sin(x / 40) * np.cos(y / 30)
+    table = np.column_stack([x + 700000, y + 5200000, z])
+    np.savetxt(tmp_path / "points.csv", table, delimiter=",", header="x,y,z", comments="")
+    points = wg.open(tmp_path / "points.csv", crs="EPSG:32632")
+    figures = wg.terrain_tiles(points, tmp_path / "points", max_error=0.2)
+    assert all(zoom.max_error <= zoom.promised for zoom in figures.zooms)
+    pyramid = wg.analyse(wg.open(write_tif(tmp_path / "dem.tif", hills())), levels=4)
+    fine = wg.terrain_tiles(pyramid, tmp_path / "fine", max_error=1.0)
+    coarse = wg.terrain_tiles(pyramid, tmp_path / "coarse", level=1, zoom=14, max_error=1.0)
+    assert coarse.figures()["n_bytes"] < fine.figures()["n_bytes"]
+
+
+@pytest.mark.filterwarnings("default::wavelet_gis.errors.PointCloudWarning")
+def test_a_promise_that_is_not_kept_is_told(tmp_path):
+    """Trees of 20 m beside ground two metres off: a rounded step makes metres of height."""
+    cloud = wg.open(write_las(tmp_path / "cloud.laz", 3000))
+    with pytest.warns(TerrainWarning, match="off by more than promised"):
+        figures = wg.terrain_tiles(cloud, tmp_path / "cloud", max_error=0.5)
+    assert any(zoom.max_error > zoom.promised for zoom in figures.zooms)
+
+
+def test_refusals(tmp_path):
+    dem = wg.open(write_tif(tmp_path / "dem.tif", hills(20, 20)))
+    with pytest.raises(OptionError, match="zoom is 40"):
+        wg.terrain_tiles(dem, tmp_path / "out", zoom=40)
+    with pytest.raises(OptionError, match=r"stored in steps of .* give at least"):
+        wg.terrain_tiles(dem, tmp_path / "out", max_error=1e-4)
+    with pytest.raises(OptionError, match="level is for pyramids"):
+        wg.terrain_tiles(dem, tmp_path / "out", level=1)
+    with pytest.warns(UserWarning, match="no CRS"):
+        lost = wg.open(write_tif(tmp_path / "lost.tif", hills(20, 20), crs=None))
+    with pytest.raises(CrsError, match="nothing tells where on earth"):
+        wg.terrain_tiles(lost, tmp_path / "out")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "letter.txt").write_text("dear", "utf-8")
+    with pytest.raises(OutputFileError, match=r"no folder with a layer\.json"):
+        wg.terrain_tiles(dem, tmp_path / "mine", overwrite=True)
+    assert (tmp_path / "mine" / "letter.txt").read_text("utf-8") == "dear"
+    wg.terrain_tiles(dem, tmp_path / "out")
+    with pytest.raises(OutputFileError, match="this folder exists"):
+        wg.terrain_tiles(dem, tmp_path / "out")
+    wg.terrain_tiles(dem, tmp_path / "out", zoom=12, max_error=2.0, overwrite=True)
+    assert max(int(p.name) for p in Path(tmp_path / "out").iterdir() if p.is_dir()) == 12
+    assert sorted(p.name for p in tmp_path.iterdir() if p.name.startswith(".")) == []

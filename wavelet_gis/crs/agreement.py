@@ -1,0 +1,65 @@
+"""Whether several files lie in one coordinate system."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from wavelet_gis.crs.frame import Georeference
+from wavelet_gis.crs.lookup import coordinate_system
+from wavelet_gis.errors import InputFileError
+
+__all__ = ["agreed"]
+
+
+def agreed(names: Sequence[str], places: Sequence[Georeference]) -> Georeference:
+    """Return what several files tell of their coordinates, which must be the same.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the files, for messages.
+    places : sequence of Georeference
+        What each tells.
+
+    Raises
+    ------
+    InputFileError
+        Two that contradict each other, in the CRS or the unit of z.
+    """
+    first = places[0]
+    for name, place in zip(names[1:], places[1:], strict=True):
+        if not _is_same(first.wkt, place.wkt):
+            raise InputFileError(
+                "{name}: its CRS is {here}, that of {first} is {there}; reproject one, or, if that "
+                "is a mistake, give the CRS of all with {0}.",
+                "crs",
+                name=name,
+                here=_told(place),
+                first=names[0],
+                there=_told(first),
+            )
+        if first.vertical_unit != place.vertical_unit:
+            raise InputFileError(
+                "{name}: its unit of z is {here}, that of {first} is {there}; convert one, or, if "
+                "that is a mistake, give the unit of all with {0}.",
+                "vertical_unit",
+                name=name,
+                here=place.vertical_unit or "not told",
+                first=names[0],
+                there=first.vertical_unit or "not told",
+            )
+    return first
+
+
+def _told(place: Georeference) -> str:
+    return coordinate_system(place.wkt).name if place.wkt else "not told"
+
+
+def _is_same(one: str | None, other: str | None) -> bool:
+    if one == other:
+        return True
+    if not one or not other:
+        return False
+    from pyproj import CRS
+
+    return bool(CRS.from_user_input(one) == CRS.from_user_input(other))

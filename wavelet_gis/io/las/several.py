@@ -1,0 +1,61 @@
+"""Several LAS files as one point cloud."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from wavelet_gis.crs.agreement import agreed
+from wavelet_gis.crs.frame import Georeference
+from wavelet_gis.errors import InputFileError
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
+from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, read_cloud
+from wavelet_gis.model.points.cloud import PointCloud
+from wavelet_gis.model.points.merged import merged_cloud
+from wavelet_gis.notes import note
+
+__all__ = ["read_clouds"]
+
+
+def read_clouds(
+    paths: Sequence[str], *, any_crs: bool = False, any_unit: bool = False, **options: Any
+) -> tuple[PointCloud, Georeference]:
+    """Return the points of several files as one cloud, and what they tell of their coordinates.
+
+    Parameters
+    ----------
+    paths : sequence of str
+        Two or more; the first gives header and VLRs.
+    any_crs, any_unit : bool
+        Whether the CRS, or the unit of z, is told otherwise and need not agree.
+    **options
+        See `wavelet_gis.io.las.read_cloud`. Classes are chosen in each file, of which some may
+        have none; heights above the ground are those above the ground of the same file.
+
+    Raises
+    ------
+    InputFileError
+        A file that cannot be read or is of another kind than the first.
+    """
+    for path in paths:
+        if suffix_of(path) not in CLOUD_SUFFIXES:
+            raise InputFileError(
+                f"{path}: {paths[0]} is a point cloud, this does not end in "
+                f"{any_of(CLOUD_SUFFIXES)}; name files of one kind."
+            )
+    read = [read_cloud(path, **options) for path in paths]
+    places = [
+        place._replace(
+            wkt=None if any_crs else place.wkt,
+            vertical_unit=None if any_unit else place.vertical_unit,
+        )
+        for _, place in read
+    ]
+    cloud = merged_cloud(paths, [cloud for cloud, _ in read])
+    if any(attribute.dimension == HEIGHT_ABOVE_GROUND for attribute in cloud.attributes):
+        note(
+            "hag_by_file",
+            "heights above the ground are above the ground of the same file; near the borders of "
+            "files they are less sure",
+        )
+    return cloud, agreed(paths, places)

@@ -1,0 +1,1 @@
+"""Tiled terrain for globes: quantized-mesh, one TIN for each tile and zoom."""

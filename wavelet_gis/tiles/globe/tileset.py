@@ -1,0 +1,357 @@
+"""A terrain as a set of quantized-mesh tiles for globes: all zooms, with errors that halve."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import OptionError, Progress
+from wavelet_core.progress import report
+from wavelet_gis.crs.lookup import coordinate_system
+from wavelet_gis.crs.projection import projected
+from wavelet_gis.errors import CrsError, TerrainWarning
+from wavelet_gis.io.folders import new_folder
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.terrain import Terrain
+from wavelet_gis.notes import warn
+from wavelet_gis.tiles.globe.edges import TileEdges, tile_edges
+from wavelet_gis.tiles.globe.normals import normals_at
+from wavelet_gis.tiles.globe.plan import TilesetPlan, plan_tiles
+from wavelet_gis.tiles.globe.quantized_mesh import QuantizedTile, encoded_tile
+from wavelet_gis.tiles.globe.source import GlobePoints, SourceSurface, source_surface
+from wavelet_gis.tiles.globe.tile_grid import STEPS, Tile, TileRange, ranges_of, tile_width
+from wavelet_gis.tiles.globe.tile_mesh import (
+    OnTile,
+    TileMesh,
+    errors_on,
+    finest_mesh,
+    joined,
+    on_tile,
+    simplified,
+    with_points,
+)
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+
+__all__ = ["LAYER", "Tileset", "ZoomFigures", "globe_points", "terrain_tiles"]
+
+#: The file that tells of all tiles.
+LAYER = "layer.json"
+
+#: Shares of a zoom's error that vertices may be off, tried one after the other until all points of
+#: the input keep it; between tries the points that do not are made vertices that stay.
+_SHARES = (0.8, 0.8, 0.8, 0.8, 0.8, 0.6, 0.4, 0.2, 0.0)
+
+#: Of the finest zoom's error, what the chains along edges may be off.
+_SHARE_OF_CHAINS = 0.4
+
+#: Of a zoom's error, what the finer mesh may be off that is handed on to the next coarser zoom. A
+#: TIN of a TIN is off by more between vertices than at them, so those need room.
+_SHARE_HANDED_ON = 1 / 16
+
+
+class ZoomFigures(NamedTuple):
+    """What a zoom has.
+
+    zoom : int
+    n_tiles, n_vertices, n_bytes : int
+    promised, max_error : float, metres, at all points of the input
+    """
+
+    zoom: int
+    n_tiles: int
+    n_vertices: int
+    n_bytes: int
+    promised: float
+    max_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class Tileset:
+    """What was written.
+
+    Attributes
+    ----------
+    bounds : tuple of float
+        West, south, east and north of the data in degrees.
+    zooms : tuple of ZoomFigures
+        From 0 up.
+    height_step : float
+        What heights are whole multiples of, metres.
+    """
+
+    bounds: tuple[float, float, float, float]
+    zooms: tuple[ZoomFigures, ...]
+    height_step: float
+
+    def figures(self) -> dict[str, Any]:
+        """Return it as JSON-able values."""
+        return {
+            "bounds": list(self.bounds),
+            "height_step": self.height_step,
+            "n_tiles": sum(zoom.n_tiles for zoom in self.zooms),
+            "n_bytes": sum(zoom.n_bytes for zoom in self.zooms),
+            "zooms": [zoom._asdict() for zoom in self.zooms],
+        }
+
+
+def terrain_tiles(
+    data: Terrain | HoldsPyramid | GeoPyramid,
+    folder: str | os.PathLike[str],
+    *,
+    level: int | None = None,
+    zoom: int | None = None,
+    max_error: float | None = None,
+    fill: float = 0.0,
+    normals: bool = False,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> Tileset:
+    """Write a terrain as quantized-mesh tiles, for globes such as CesiumJS; return their figures.
+
+    Parameters
+    ----------
+    data : Terrain, Analysis, Filtered or GeoPyramid
+        From `wavelet_gis.open`. Its CRS tells where on earth it is; heights are written as they
+        are, in metres.
+    folder : path
+        A folder that does not exist yet, or one of an earlier tile set, to be replaced.
+    level : int, optional
+        Of a pyramid; by default the finest.
+    zoom : int, optional
+        The finest; by default the one whose tiles have some 128 points along each side.
+    max_error : float, optional
+        Largest vertical error at the points, metres, that the finest zoom may have; twice that on
+        the next coarser one and so on. By default a tenth of the spacing of the points.
+    fill : float
+        Height of the ground beyond the data, metres.
+    normals : bool
+        Whether vertices have normals, for light and shade.
+    overwrite : bool
+        Whether a tile set that exists may be replaced.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    CrsError
+        Without a CRS that tells the place on earth.
+    OptionError
+        A zoom or an error that the format cannot hold.
+    OutputFileError
+        A folder that may not be replaced or cannot be written.
+    Cancelled
+        ``progress`` returned False.
+    """
+    terrain = data if isinstance(data, Terrain) else pyramid_of(data)
+    if level is not None and isinstance(terrain, Terrain):
+        raise OptionError("{0} is for pyramids, and this is a terrain; leave it out.", "level")
+    globe = globe_points(terrain, level)
+    name = terrain.source_name if isinstance(terrain, GeoPyramid) else terrain.name
+    with new_folder(folder, LAYER, overwrite=overwrite) as scratch:
+        plan = plan_tiles(globe, zoom, max_error, fill)
+        return _Writer(globe, plan, scratch, normals, progress).run(Path(name).name)
+
+
+def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobePoints:
+    """Return the TIN of a terrain, or of a level of a pyramid, on the earth.
+
+    Parameters
+    ----------
+    data : Terrain or GeoPyramid
+    level : int, optional
+        Of a pyramid; by default the finest.
+
+    Raises
+    ------
+    CrsError
+        Without a CRS that tells the place on earth.
+    """
+    if isinstance(data, Terrain):
+        mesh, name = data.mesh, data.name
+    else:
+        mesh, name = data.pyramid.synthesise(level), data.source_name
+    if data.system.wkt is None or data.system.kind == "unknown":
+        raise CrsError(
+            "{name}: nothing tells where on earth this is; give its CRS with {0}.",
+            "crs",
+            name=name,
+        )
+    places = data.frame.to_file(mesh.vertices)
+    longitude, latitude = projected(
+        data.system, coordinate_system("EPSG:4326"), places[:, 0], places[:, 1]
+    )
+    is_geographic = data.system.kind == "geographic"
+    metres = mesh.vertices[:, 2] * (1.0 if is_geographic else data.system.horizontal_unit)
+    return GlobePoints(longitude, latitude, metres, mesh.faces)
+
+
+class _Writer:
+    """The way from the finest zoom up to the first."""
+
+    def __init__(
+        self,
+        globe: GlobePoints,
+        plan: TilesetPlan,
+        folder: Path,
+        normals: bool,
+        progress: Progress | None,
+    ) -> None:
+        self._globe = globe
+        self._plan = plan
+        self._folder = folder
+        self._has_normals = normals
+        self._progress = progress
+        self._source = source_surface(globe, plan.zoom, plan.fill_height)
+        report(progress, 0.03)
+
+    def run(self, name: str) -> Tileset:
+        """Write all tiles and the file that tells of them."""
+        plan, source = self._plan, self._source
+        low, high = source.extent() * (tile_width(plan.zoom) / STEPS) - [180.0, 90.0]
+        ranges = ranges_of((*low.tolist(), *high.tolist()), plan.zoom)
+        edges = tile_edges(
+            source, ranges[-1], plan.height_step, _SHARE_OF_CHAINS * plan.max_error, plan.n_parts()
+        )
+        n_tiles = sum(len(tiles) for tiles in ranges)
+        n_done = 0
+        figures: list[ZoomFigures] = []
+        meshes: dict[Tile, TileMesh] = {}
+        for tiles in ranges[::-1]:
+            made: dict[Tile, TileMesh] = {}
+            drawn: dict[Tile, OnTile] = {}
+            worst = 0.0
+            for tile in tiles.tiles():
+                children = [meshes.pop(child) for child in tile.children() if child in meshes]
+                made[tile], drawn[tile], error = _best(source, edges, plan, tile, children)
+                worst = max(worst, error)
+                n_done += 1
+                report(self._progress, 0.05 + 0.95 * n_done / n_tiles)
+            meshes = made
+            n_vertices = sum(len(on.u) for on in drawn.values())
+            n_bytes = self._write(drawn)
+            figures.append(
+                ZoomFigures(
+                    tiles.zoom, len(drawn), n_vertices, n_bytes, plan.error_at(tiles.zoom), worst
+                )
+            )
+        self._tell_of_errors(figures, name)
+        longitude, latitude = self._globe.longitude, self._globe.latitude
+        west, south, east, north = (
+            float(value)
+            for value in (longitude.min(), latitude.min(), longitude.max(), latitude.max())
+        )
+        bounds = (west, south, east, north)
+        layer = _layer(ranges, bounds, name, self._has_normals)
+        (self._folder / LAYER).write_text(json.dumps(layer, indent=1) + "\n", "utf-8")
+        return Tileset(bounds, tuple(figures[::-1]), plan.height_step)
+
+    def _tell_of_errors(self, figures: list[ZoomFigures], name: str) -> None:
+        """Warn where a zoom has not kept its error, as on points like a field of spikes."""
+        above = [zoom for zoom in figures if zoom.max_error > zoom.promised]
+        if above:
+            worst = max(above, key=lambda zoom: zoom.max_error / zoom.promised)
+            warn(
+                TerrainWarning,
+                "zoom_error_exceeded",
+                "{name}: at {count} of {n_zooms} zooms some points are off by more than promised, "
+                "at zoom {zoom} by {error:.3g} m instead of {promised:.3g} m; next to steps this "
+                "steep the format's own rounding counts (a larger {0} keeps its promise)",
+                "max_error",
+                stacklevel=4,
+                name=name,
+                count=len(above),
+                n_zooms=len(figures),
+                zoom=worst.zoom,
+                error=worst.max_error,
+                promised=worst.promised,
+            )
+
+    def _write(self, drawn: dict[Tile, OnTile]) -> int:
+        """Write the tiles of a zoom; return their size in bytes."""
+        normals = (
+            normals_at(self._source, drawn) if self._has_normals else dict.fromkeys(drawn, None)
+        )
+        n_bytes = 0
+        for tile, on in drawn.items():
+            content = encoded_tile(
+                QuantizedTile(
+                    tile.bounds(),
+                    on.u,
+                    on.v,
+                    on.height,
+                    self._plan.height_step,
+                    on.faces,
+                    normals[tile],
+                )
+            )
+            path = self._folder / str(tile.zoom) / str(tile.x) / f"{tile.y}.terrain"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+            n_bytes += len(content)
+        return n_bytes
+
+
+def _best(
+    source: SourceSurface, edges: TileEdges, plan: TilesetPlan, tile: Tile, children: list[TileMesh]
+) -> tuple[TileMesh, OnTile, float]:
+    """Return what a tile hands on, what is drawn of it, and how far that is off at all points."""
+    border = edges.border(tile)
+    points = source.points_in(tile)
+    if children:
+        mesh = joined(children, border)
+    else:
+        n_parts = edges.n_parts[tile.zoom]
+        around = source.ring_in(tile) if tile.zoom == plan.zoom else points[:0]
+        mesh = finest_mesh(
+            border, np.concatenate([points, around]), plan.height_step, n_parts, plan.fill
+        )
+    if not len(points):
+        return mesh, on_tile(mesh, tile, plan.zoom), 0.0  # level, and cut as the earth is round
+    promised = plan.error_at(tile.zoom)
+    kept: NDArray[np.bool_] = np.zeros(len(mesh.x), dtype=bool)
+    best: tuple[float, OnTile] | None = None
+    for share in _SHARES:
+        smaller = simplified(mesh, border, tile, plan.height_step, share * promised, kept)
+        drawn = on_tile(smaller, tile, plan.zoom)
+        errors = np.abs(errors_on(drawn, tile, plan.zoom, plan.height_step, points))
+        errors[np.isnan(errors)] = 0.0  # on the border, beside it by rounding
+        worst = float(errors.max())
+        if best is None or worst < best[0]:
+            best = worst, drawn
+        if worst <= promised:
+            break
+        mesh, kept = with_points(mesh, points[errors > promised], plan.height_step, kept)
+    assert best is not None
+    stays = np.zeros(len(mesh.x), dtype=bool)
+    handed_on = simplified(mesh, border, tile, plan.height_step, _SHARE_HANDED_ON * promised, stays)
+    return handed_on, best[1], best[0]
+
+
+def _layer(
+    ranges: list[TileRange], bounds: tuple[float, float, float, float], name: str, normals: bool
+) -> dict[str, Any]:
+    layer: dict[str, Any] = {
+        "tilejson": "2.1.0",
+        "name": name,
+        "version": "1.0.0",
+        "format": "quantized-mesh-1.0",
+        "scheme": "tms",
+        "projection": "EPSG:4326",
+        "tiles": ["{z}/{x}/{y}.terrain"],
+        "minzoom": 0,
+        "maxzoom": len(ranges) - 1,
+        "bounds": list(bounds),
+        "available": [
+            [{"startX": r.first_x, "startY": r.first_y, "endX": r.last_x, "endY": r.last_y}]
+            for r in ranges
+        ],
+    }
+    if normals:
+        layer["extensions"] = ["octvertexnormals"]
+    return layer
