@@ -84,7 +84,7 @@ def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, 
     size = np.diff(indptr)
     row, place = expanded(indptr[:-1], size)
     check_links(0, len(odd), odd, ring[indptr[:-1]], mesh, is_taken)
-    _refuse_doubled_edges(odd, indptr, ring, mesh, row, place, is_taken)
+    _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken)
     vertex_lives[odd[is_taken]] = False
     a = ring[indptr[:-1]]
     with_face = is_taken[row] & (ring_faces >= 0)
@@ -102,31 +102,27 @@ def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, 
     _close_faces(ring_faces[closes], apex, mesh, face_lives)
 
 
-def _refuse_doubled_edges(odd, indptr, ring, mesh, row, place, is_taken):
+def _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken):
     """Refuse what an edge forbids that a collapse before it in the list has made.
 
     No two odd vertices are neighbours, so a collapse takes no edge between vertices that stay; it
     only makes edges from its target to the rest of its ring. Of two that make one, the first does.
-    Where two fans of faces meet at a target, only the one that the loops walk counts.
     """
     a = ring[indptr[:-1]]
     n = len(mesh.outgoing)
-    targets = np.unique(a)
-    around = rings_of(targets, mesh).ring
-    which, k = np.nonzero(around >= 0)
-    found = np.unique(targets[which].astype(np.int64) * n + around[which, k])
+    # edges of the level that leave a target
+    half_edges = (3 * np.flatnonzero(face_lives)[:, None] + np.arange(3)).ravel()
+    tail, head = mesh.origin[half_edges], mesh.origin[after(half_edges)]
     is_target = np.zeros(n, dtype=bool)
     is_target[a] = True
-    onto, x = a[row].astype(np.int64), ring[place].astype(np.int64)
-    spokes, mirrored = onto * n + x, x * n + onto
-    may_make = is_taken[row] & (place > indptr[row])
-    makes = may_make & ~_contains(found, spokes)
-    # the same edge from its other end, if the odd vertex is in the fan that is walked there
-    joins = may_make & is_target[x] & _contains(found, x * n + odd[row])
-    joins &= ~_contains(found, mirrored)
+    tail, head = np.concatenate([tail, head]), np.concatenate([head, tail])
+    asked = is_target[tail]
+    edges = np.unique(tail[asked].astype(np.int64) * n + head[asked])
+    spokes = a[row].astype(np.int64) * n + ring[place]
+    makes = is_taken[row] & (place > indptr[row]) & ~_contains(edges, spokes)
     made, maker = spokes[makes], row[makes]
-    keys = np.concatenate([made, mirrored[joins]])
-    makers = np.concatenate([maker, row[joins]])
+    mirrored = ring[place[makes]].astype(np.int64) * n + a[maker]
+    keys, makers = np.concatenate([made, mirrored]), np.concatenate([maker, maker])
     order = np.argsort(keys, kind="stable")
     keys, makers = keys[order], makers[order]
     low = np.searchsorted(keys, made, side="left")
