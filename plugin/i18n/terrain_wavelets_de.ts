@@ -2221,7 +2221,7 @@
   <message>
     <location filename="../../MESH_FORMATS"/>
     <source>QGIS (as a mesh layer), D-Flow FM, xugrid</source>
-    <translation>QGIS (als Mesh-Layer), D-Flow FM, xugrid</translation>
+    <translation>QGIS (als Netzlayer), D-Flow FM, xugrid</translation>
   </message>
   <message>
     <location filename="../../MESH_FORMATS"/>
