@@ -352,11 +352,7 @@ def is_original(text, expected):
 
 
 def samples(folder):
-<<<<<<< HEAD
-    """Write the files that are mutated: of a DEM, whole and in parts, of a cloud and of a TIN."""
-=======
-    """Write the files that are mutated: of a DEM, a cloud, TINs of two designs, an altered DEM."""
->>>>>>> main
+    """Write the files that are mutated: of DEMs, one in parts, a cloud, TINs of two designs."""
     from gis.samples import hills, write_las, write_tif
 
     from wavelet_core import analyse
@@ -386,10 +382,10 @@ def samples(folder):
         listed = path.with_name(f"{path.stem}_1.gpkg")
         write_format_one(listed, geo)
         yield listed, read(listed)
-    deep = terrains[0].geo_pyramid(analyse(terrains[0].mesh, levels=12)).with_errors()
     usual = recorded.LEAST_IN_PARTS, recorded.PART_SHARE, recorded.LEAST_IN_PART
     recorded.LEAST_IN_PARTS, recorded.PART_SHARE, recorded.LEAST_IN_PART = 100, 1 / 3, 20
     path = folder / "parts.gpkg"
+    deep = terrains[0].geo_pyramid(analyse(terrains[0].mesh, levels=12)).with_errors()
     write_pyramid(path, deep)
     recorded.LEAST_IN_PARTS, recorded.PART_SHARE, recorded.LEAST_IN_PART = usual
     assert read_levels(path, 1).pyramid.part is not None

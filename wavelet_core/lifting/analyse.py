@@ -30,13 +30,8 @@ from .step import Step, analyse_level
 
 #: Share of the vertices that one level is expected to keep, for the progress bar alone.
 EXPECTED_KEPT = 0.73
-<<<<<<< HEAD
 #: Shares of the time of a level, for the progress bar alone: one-rings, and choosing what goes.
 OF_CONNECTIVITY, OF_SPLIT = 0.15, 0.65
-#: Attributes of weight 0 still count this little, so that they can be lifted beside z.
-LEAST_WEIGHT = 1e-9
-=======
->>>>>>> main
 
 
 def analyse(
@@ -212,13 +207,10 @@ class _Analysis:
         self._integrals = np.ones(mesh.n_vertices)
         self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
-<<<<<<< HEAD
         self._share_of_step = self._told = 0.0
-=======
         self._recorder: Recorder | None = None
         if is_recorded and options.is_error_guided:
             self._recorder = Recorder(mesh, locked, options.update, options.as_dict())
->>>>>>> main
 
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
