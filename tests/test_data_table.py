@@ -59,7 +59,7 @@ def test_the_page_tells_what_happens(data_folder, size):
     assert n_tried > 60
 
 
-#: Larger files come back in tests/gis/io/test_round_trip.py; here they are tried where the variable is set.
+#: Larger ones come back in tests/gis/io/test_round_trip.py, and here where the variable is set.
 HUGE_FILE = 3_000_000
 HUGE_VARIABLE = "TERRAIN_WAVELETS_HUGE_FILES"
 
