@@ -172,6 +172,7 @@ def analyse_surface(
     level = SurfaceLevel(
         plan, columns * weights, faces, locked, rules.with_update, rules.outline_tolerance
     )
+    del faces  # which nobody else may keep
     steps: list[CollapseStep] = []
     figures = [level.figures()]
     n_flat = 0
