@@ -23,7 +23,7 @@ from ..partition.stopping import stop_record
 from ..progress import Progress, report
 from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
-from .pyramid import Pyramid
+from .pyramid import Pyramid, PyramidPart
 from .signal import SIGNALS
 from .step import Step, analyse_level
 
@@ -54,6 +54,7 @@ def analyse(
     norm: str | None = None,
     removal_fraction: float | None = None,
     outline_tolerance: float = 0.0,
+    integrals: ArrayLike | None = None,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
 
@@ -115,6 +116,10 @@ def analyse(
         may lie, in the unit of x and y, with ``partition="surface"`` and its own filters. With 0 an
         outline vertex goes only where the outline runs straight. Input vertices that a level does
         not cover any more count with their error at the nearest place of its outline.
+    integrals : array_like, shape (n_vertices,), optional
+        Of the scaling functions at the vertices, where the mesh is itself a level of a pyramid, or
+        of several side by side; by default 1, as of an input. The pyramid keeps them
+        (`Pyramid.part`), so that their sum with the coefficients stays what it was.
 
     Returns
     -------
@@ -171,7 +176,9 @@ def analyse(
     )
     announce_engine(mesh.n_vertices)
     with fitting_engine(mesh.n_vertices):
-        return _Analysis(mesh, options, _locked_mask(locked, mesh), progress).run()
+        return _Analysis(
+            mesh, options, _locked_mask(locked, mesh), progress, _begun_integrals(integrals, mesh)
+        ).run()
 
 
 class _Analysis:
@@ -183,6 +190,7 @@ class _Analysis:
         options: AnalysisOptions,
         locked: NDArray[np.bool_],
         progress: Progress | None,
+        integrals: FloatArray | None,
     ) -> None:
         self._mesh = mesh
         self._options = options
@@ -197,7 +205,8 @@ class _Analysis:
         self._coefficients = np.ascontiguousarray(np.hstack(columns))
         self._horizontal = mesh.vertices[:, :2] if self._in_plan else None
         self._locked = locked
-        self._integrals = np.ones(mesh.n_vertices)
+        self._begun = integrals
+        self._integrals = np.ones(mesh.n_vertices) if integrals is None else integrals
         self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
 
@@ -220,6 +229,9 @@ class _Analysis:
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
             measured=self._figures,
+            part=None
+            if self._begun is None
+            else PyramidPart(np.arange(self._mesh.n_vertices, dtype=np.int32), frozen(self._begun)),
         )
         record = stop_record(
             self._stopped_by,
@@ -272,6 +284,7 @@ class _Analysis:
             self._scale.height_weights(),
             rules,
             self._report_size,
+            self._begun,
         )
         self._coefficients = result.coarse
         self._stopped_by = result.stopped_by
@@ -443,6 +456,20 @@ def _locked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.boo
             n=mesh.n_vertices,
         )
     return mask
+
+
+def _begun_integrals(integrals: ArrayLike | None, mesh: TriangleMesh) -> FloatArray | None:
+    if integrals is None:
+        return None
+    values = np.array(integrals, dtype=np.float64)
+    if values.shape != (mesh.n_vertices,) or not np.isfinite(values).all():
+        raise OptionError(
+            "{0} has shape {shape}; give one finite number for each of {n} vertices.",
+            "integrals",
+            shape=values.shape,
+            n=mesh.n_vertices,
+        )
+    return values
 
 
 def _require_upright(mesh: TriangleMesh) -> None:
