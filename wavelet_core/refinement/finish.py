@@ -139,7 +139,12 @@ def finished_within(
     part = mesh_within(pyramid, max_error, part_of(progress, 0.0, 0.5), keep_points=True)
     cover = cover_of(part.mesh, original.vertices[:, :2])
     if rounds == 0:
-        return FinishedTin(part.mesh, part.vertex_ids, cover, (), False)
+        ids = part.vertex_ids
+        mesh = TriangleMesh._trusted(
+            original.vertices[ids], part.mesh.faces, original.attributes[ids],
+            original.attribute_names,
+        )  # fmt: skip
+        return FinishedTin(mesh, ids, cover, (), False)
     return _refined(
         pyramid, original, part.mesh, part.vertex_ids, cover, rounds, False,
         part_of(progress, 0.5, 1.0), max_error,

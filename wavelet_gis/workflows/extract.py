@@ -22,13 +22,8 @@ from wavelet_gis.notes import note
 from wavelet_gis.workflows.exchange import InOtherLibraries
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, warn_of_error_above
 from wavelet_gis.workflows.save import check_surface_output, write_surface_raster, write_tin
-from wavelet_gis.workflows.tolerance import (
-    MaxError,
-    ZoneErrors,
-    is_by_place,
-    tolerances,
-    zone_errors,
-)
+from wavelet_gis.workflows.tolerance.by_place import MaxError, is_by_place, tolerances
+from wavelet_gis.workflows.tolerance.zone_errors import ZoneErrors, zone_errors
 
 __all__ = ["Surface", "SurfaceErrors", "extract", "measured"]
 
@@ -193,8 +188,8 @@ def extract(
     max_error : float, path, str, array_like or callable, optional
         Instead: the smallest found with no input vertex farther off, vertically, in the input's
         unit of z; one distance, or what gives one by place, see
-        `wavelet_gis.workflows.tolerance.tolerances`. Points that share x and y with a vertex are
-        farther off by as much as they are apart, which is warned of.
+        `wavelet_gis.workflows.tolerance.by_place.tolerances`. Points that share x and y with a
+        vertex are farther off by as much as they are apart, which is warned of.
     zones : path or GeoDataFrame, optional
         Polygons with a ``max_error`` of their own.
     zone_field : str, optional
@@ -243,7 +238,7 @@ def _within(
     progress: Progress | None,
 ) -> Surface:
     finest, z_scale = geo.pyramid.mesh(geo.pyramid.n_levels), geo.frame.z_scale
-    by_place = is_by_place(max_error, zones)
+    by_place = is_by_place(max_error, zones, zone_field)
     limits = tolerances(geo, finest, max_error, zones, zone_field)
     if refine == 0:
         limit = limits * z_scale if by_place else limits[0] * z_scale

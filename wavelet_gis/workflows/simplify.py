@@ -35,7 +35,8 @@ from wavelet_gis.workflows.options import (
     warn_of_error_above,
     working_rules,
 )
-from wavelet_gis.workflows.tolerance import MaxError, is_by_place, tolerances, zone_errors
+from wavelet_gis.workflows.tolerance.by_place import MaxError, is_by_place, tolerances
+from wavelet_gis.workflows.tolerance.zone_errors import zone_errors
 
 __all__ = ["Simplified", "simplify"]
 
@@ -171,7 +172,7 @@ def simplify(
     max_error : float, path, str, array_like or callable, optional
         Instead: keep so many that no input vertex is farther off, vertically; in the input's unit
         of z. One distance, or what gives one by place, see
-        `wavelet_gis.workflows.tolerance.tolerances`; vertices are then input vertices.
+        `wavelet_gis.workflows.tolerance.by_place.tolerances`; vertices are then input vertices.
     zones : path or GeoDataFrame, optional
         Polygons with a ``max_error`` of their own.
     zone_field : str, optional
@@ -221,7 +222,7 @@ def simplify(
         )
     keywords = options_for(terrain, options)
     limits, largest = None, None
-    if is_by_place(max_error, zones):
+    if is_by_place(max_error, zones, zone_field):
         limits = tolerances(terrain, terrain.mesh, max_error, zones, zone_field)
         largest = _largest_of(limits, terrain)
         keywords = _by_largest_error(keywords)

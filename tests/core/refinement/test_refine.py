@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from wavelet_core import Cancelled, MeshError, OptionError, TriangleMesh, analyse, refine, synthetic
 from wavelet_core._kernels._jit import HAS_NUMBA, THREADS_VARIABLE, engine
 from wavelet_core.metrics import surface_errors
+from wavelet_core.refinement.finish import finished_within
 
 ORACLE = "compiled" if HAS_NUMBA else "loops"
 
@@ -119,6 +120,28 @@ def test_engines_give_the_same_bytes(mesh_name, task):
             arrays = (refined.mesh.vertices, refined.mesh.attributes, refined.mesh.faces)
             outcomes.append([*(a.tobytes() for a in arrays), refined.rounds])
     assert outcomes[0] == outcomes[1]
+
+
+@pytest.mark.parametrize("mesh_name", MESHES)
+def test_a_tolerance_for_each_point_is_kept_and_used(mesh_name):
+    mesh = MESHES[mesh_name]()
+    x = mesh.vertices[:, 0]
+    limits = np.where(x < np.median(x), 0.5, 4.0) * (0.2 if mesh_name == "hills" else 1.0)
+    pyramid = analyse(mesh, norm="max", max_error=float(limits.max()), update="none")
+    outcomes = []
+    for name in (ORACLE, "arrays"):
+        with engine(name):
+            tin = finished_within(pyramid, mesh, limits)
+            outcomes.append((tin.mesh.vertices.tobytes(), tin.mesh.faces.tobytes(), tin.rounds))
+    assert outcomes[0] == outcomes[1]
+    errors = np.abs(surface_errors(tin.mesh, mesh.vertices))
+    assert (errors[np.isfinite(errors)] <= limits[np.isfinite(errors)] * (1 + 1e-12)).all()
+    assert tin.mesh.n_vertices < finished_within(pyramid, mesh, limits, rounds=0).mesh.n_vertices
+    strict = refine(
+        pyramid.mesh(pyramid.n_levels), mesh, np.arange(mesh.n_vertices), norm="max",
+        max_error=float(limits.min()),
+    )  # fmt: skip
+    assert tin.mesh.n_vertices < strict.mesh.n_vertices
 
 
 def test_plain_loops_agree_with_the_array_engine():
@@ -276,6 +299,13 @@ def test_cancelling_stops_it():
     pyramid = analyse(mesh, target_vertices=80)
     with pytest.raises(Cancelled):
         refine(pyramid.mesh(0), mesh, pyramid.vertex_ids(0), progress=lambda fraction: False)
+
+
+def test_tolerances_are_one_or_one_for_each_point():
+    mesh = synthetic.hills(8, 8)
+    for limits in (np.ones(63), np.full(64, -1.0), np.ones((8, 8))):
+        with pytest.raises(OptionError, match="max_error"):
+            refine(mesh, mesh, np.arange(64), norm="max", max_error=limits)
 
 
 def test_bad_input_is_refused():

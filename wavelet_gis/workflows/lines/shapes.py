@@ -19,8 +19,8 @@ from wavelet_core.mesh.location import cover_of
 from wavelet_gis.errors import InputFileError, LayerWarning
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected, note, warn
-from wavelet_gis.workflows.layer_shapes import LINES, POINTS, POLYGONS, shapes_in_frame
 from wavelet_gis.workflows.lines.constraints import Constraints, constrained, same_place
+from wavelet_gis.workflows.lines.layer_shapes import LINES, POINTS, POLYGONS, shapes_in_frame
 
 __all__ = ["terrain_with_shapes"]
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import ast
 import os
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,11 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.features.shape import surface_shape
-from wavelet_core.mesh.location import surface_errors
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.workflows.layer_shapes import POLYGONS, Place, shapes_in_frame
+from wavelet_gis.workflows.lines.layer_shapes import POLYGONS, Place, shapes_in_frame
+from wavelet_gis.workflows.tolerance.formula import parsed, value_of
 
-__all__ = ["MaxError", "ZoneErrors", "is_by_place", "tolerances", "zone_errors"]
+__all__ = ["MaxError", "is_by_place", "tolerances"]
 
 FloatArray = NDArray[np.float64]
 
@@ -28,54 +27,13 @@ MaxError = float | str | os.PathLike[str] | NDArray[Any] | Callable[[TriangleMes
 #: Field of the zones that holds the tolerance, where no other is named.
 ZONE_FIELD = "max_error"
 
-#: Zones are told of one by one up to so many different tolerances, and in octaves beyond.
-MOST_ZONES = 12
 
-#: What a formula may call.
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "abs": np.abs,
-    "clip": np.clip,
-    "exp": np.exp,
-    "log": np.log,
-    "max": lambda *values: np.maximum.reduce(np.broadcast_arrays(*values)),
-    "min": lambda *values: np.minimum.reduce(np.broadcast_arrays(*values)),
-    "sqrt": np.sqrt,
-    "where": np.where,
-}
-_OPERATORS: dict[type, Callable[..., Any]] = {
-    ast.Add: np.add,
-    ast.Sub: np.subtract,
-    ast.Mult: np.multiply,
-    ast.Div: np.divide,
-    ast.Pow: np.power,
-    ast.USub: np.negative,
-    ast.UAdd: np.positive,
-    ast.Lt: np.less,
-    ast.LtE: np.less_equal,
-    ast.Gt: np.greater,
-    ast.GtE: np.greater_equal,
-}
-_NAMES = ("z", "slope")
-
-
-class ZoneErrors(NamedTuple):
-    """What came out where the tolerance is one, or of one octave, in the input's unit of z.
-
-    least, most : float, tolerances; equal where the zone has one
-    n_points, n_vertices : int, input vertices, and those that are vertices of the surface
-    rmse, max_error : float
-    """
-
-    least: float
-    most: float
-    n_points: int
-    n_vertices: int
-    rmse: float
-    max_error: float
-
-
-def is_by_place(max_error: MaxError | None, zones: Any = None) -> bool:
+def is_by_place(
+    max_error: MaxError | None, zones: Any = None, zone_field: str | None = None
+) -> bool:
     """Return whether a tolerance differs from place to place."""
+    if zones is None and zone_field is not None:
+        raise OptionError("{0} is of {1}; give both or none.", "zone_field", "zones")
     return zones is not None or not (max_error is None or _is_number(max_error))
 
 
@@ -117,8 +75,6 @@ def tolerances(
     OptionError
         A formula that is none, numbers of another length, negative ones or none for some vertex.
     """
-    if zones is None and zone_field is not None:
-        raise OptionError("{0} is of {1}; give both or none.", "zone_field", "zones")
     limits = np.full(mesh.n_vertices, np.nan)
     if max_error is not None:
         limits[:] = _of_terrain(place, mesh, max_error)
@@ -144,60 +100,13 @@ def tolerances(
     return limits
 
 
-def zone_errors(
-    mesh: TriangleMesh,
-    vertex_ids: NDArray[np.int64],
-    points: FloatArray,
-    limits: FloatArray,
-    z_scale: float,
-) -> tuple[ZoneErrors, ...]:
-    """Return vertices and errors of a surface by its tolerance, the strictest zone first.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        The surface.
-    vertex_ids : (n_vertices,) int64
-        Input vertices that it has.
-    points : (n_points, 3) float64
-        The input vertices.
-    limits : (n_points,) float64
-        From `tolerances`.
-    z_scale : float
-        Working units in one of the input's unit of z.
-    """
-    errors = np.abs(surface_errors(mesh, points)) / z_scale
-    levels = np.unique(limits)
-    zone = np.searchsorted(levels, limits)
-    if len(levels) > MOST_ZONES:
-        octave = np.floor(np.log2(np.maximum(limits, np.finfo(float).tiny)))
-        zone = np.searchsorted(np.unique(octave), octave)
-    is_vertex = np.zeros(len(points), dtype=bool)
-    is_vertex[vertex_ids] = True
-    rows = []
-    for number in range(int(zone.max(initial=-1)) + 1):
-        inside = zone == number
-        covered = errors[inside & np.isfinite(errors)]
-        rows.append(
-            ZoneErrors(
-                float(limits[inside].min()),
-                float(limits[inside].max()),
-                int(inside.sum()),
-                int((inside & is_vertex).sum()),
-                float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
-                float(covered.max(initial=0.0)),
-            )
-        )
-    return tuple(rows)
-
-
 def _of_terrain(place: Place, mesh: TriangleMesh, max_error: MaxError) -> ArrayLike:
     if _is_number(max_error):
         return float(max_error)  # type: ignore[arg-type]
     if isinstance(max_error, str):
-        formula = _parsed(max_error)
+        formula = parsed(max_error)
         if formula is not None:
-            return _value(formula, _variables(place, mesh), max_error)
+            return value_of(formula, _variables(place, mesh), max_error)
     if isinstance(max_error, str | os.PathLike):
         return _of_raster(place, mesh, max_error)
     values = np.asarray(max_error(mesh) if callable(max_error) else max_error)
@@ -213,6 +122,13 @@ def _of_terrain(place: Place, mesh: TriangleMesh, max_error: MaxError) -> ArrayL
     return values
 
 
+def _variables(place: Place, mesh: TriangleMesh) -> dict[str, Callable[[], FloatArray]]:
+    return {
+        "z": lambda: place.frame.to_file(mesh.vertices)[:, 2],
+        "slope": lambda: surface_shape(mesh).slope,
+    }
+
+
 def _is_number(max_error: object) -> bool:
     if isinstance(max_error, str):
         try:
@@ -221,76 +137,6 @@ def _is_number(max_error: object) -> bool:
             return False
         return True
     return isinstance(max_error, int | float | np.number) and not isinstance(max_error, bool)
-
-
-# -- formulas ------------------------------------------------------------------------------------
-
-
-def _parsed(text: str) -> ast.expr | None:
-    """Return a formula, or None of what is to be a file."""
-    if os.path.exists(text):
-        return None
-    try:
-        formula = ast.parse(text, mode="eval").body
-    except (SyntaxError, ValueError, MemoryError, RecursionError):
-        return None
-    if isinstance(formula, ast.Attribute):  # a file's name, as Python reads it
-        return None
-    return formula
-
-
-def _variables(place: Place, mesh: TriangleMesh) -> dict[str, Callable[[], FloatArray]]:
-    return {
-        "z": lambda: place.frame.to_file(mesh.vertices)[:, 2],
-        "slope": lambda: surface_shape(mesh).slope,
-    }
-
-
-def _value(part: ast.expr, variables: dict[str, Callable[[], FloatArray]], text: str) -> Any:
-    """Return what a part of a formula comes to; only numbers, names and calls that are known."""
-
-    def of(node: ast.expr) -> Any:
-        return _value(node, variables, text)
-
-    if isinstance(part, ast.Constant) and isinstance(part.value, int | float):
-        return float(part.value)
-    if isinstance(part, ast.Name) and part.id in variables:
-        return variables[part.id]()
-    with np.errstate(all="ignore"):
-        if isinstance(part, ast.BinOp) and type(part.op) in _OPERATORS:
-            return _OPERATORS[type(part.op)](of(part.left), of(part.right))
-        if isinstance(part, ast.UnaryOp) and type(part.op) in _OPERATORS:
-            return _OPERATORS[type(part.op)](of(part.operand))
-        if isinstance(part, ast.Compare) and len(part.ops) == 1 and type(part.ops[0]) in _OPERATORS:
-            return _OPERATORS[type(part.ops[0])](of(part.left), of(part.comparators[0]))
-        if (
-            isinstance(part, ast.Call)
-            and isinstance(part.func, ast.Name)
-            and part.func.id in _FUNCTIONS
-            and not part.keywords
-        ):
-            try:
-                return _FUNCTIONS[part.func.id](*(of(argument) for argument in part.args))
-            except (TypeError, ValueError) as error:
-                raise OptionError(
-                    "{0} {text!r}: {call} takes other arguments ({reason}).",
-                    "max_error",
-                    text=text,
-                    call=part.func.id,
-                    reason=str(error).split("\n")[0],
-                ) from error
-    raise OptionError(
-        "{0} {text!r} is no raster that is there, and as a formula {part!r} is not understood; "
-        "formulas have numbers, {names}, + - * / **, comparisons and {calls}.",
-        "max_error",
-        text=text,
-        part=ast.unparse(part),
-        names=" and ".join(_NAMES),
-        calls=", ".join(_FUNCTIONS),
-    )
-
-
-# -- rasters and zones ---------------------------------------------------------------------------
 
 
 def _of_raster(place: Place, mesh: TriangleMesh, path: str | os.PathLike[str]) -> FloatArray:

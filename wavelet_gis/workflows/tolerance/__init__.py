@@ -1,0 +1,1 @@
+"""How far a surface may be off, by place: what says so, and what came out."""
