@@ -1,4 +1,4 @@
-"""The index of a tile set: a GeoPackage with the footprint of every piece; the plan is beside it."""
+"""The index of a tile set: a GeoPackage with the footprint of every piece, beside the plan."""
 
 from __future__ import annotations
 

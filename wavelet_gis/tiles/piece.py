@@ -173,7 +173,7 @@ def join(
         [place[start + mesh.faces] for start, mesh in zip(starts[:-1], meshes, strict=True)]
     )
     # A cell that several pieces have was given the integral 1 in each, and counts once.
-    counted = np.bincount(place, np.concatenate(integrals)) - (np.bincount(place) - 1)
+    counted = np.bincount(place, np.concatenate(integrals)) - (np.bincount(place) - 1.0)
     rows, columns = np.divmod(unique, plan.shape[1])
     x, y = plan.geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
     frame = plan.local_frame

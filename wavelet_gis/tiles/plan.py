@@ -26,9 +26,12 @@ __all__ = ["LEVELS", "TILE", "Piece", "SourceFile", "TilePlan", "plan_of_rasters
 #: Cells along the side of a tile.
 TILE = 1024
 
-#: Levels of a tile and of each group but the last: with a quarter gone at each, a group of four
-#: then has about as many vertices as a tile.
-LEVELS = 5
+#: Levels of a tile and of each group but the last: a level takes some 16 % of the vertices, so a
+#: group of four then has about as many as a tile.
+LEVELS = 8
+
+#: Options of `wavelet_core.analyse` that leave x and y of the vertices in place.
+_WAVELETS = ("norm", "partition", "prediction", "removal_fraction", "update")
 
 _FORMAT = "terrain-wavelets tiles 1"
 
@@ -235,7 +238,8 @@ def plan_of_rasters(
     crs, vertical_unit, band, nodata, offline
         See `wavelet_gis.open`.
     wavelets : dict, optional
-        Options of the analysis; see `wavelet_core.analyse`.
+        Of `wavelet_core.analyse`: ``norm``, ``partition``, ``prediction``, ``removal_fraction`` and
+        ``update``.
 
     Raises
     ------
@@ -258,6 +262,9 @@ def plan_of_rasters(
             tile=tile,
             levels=levels,
         )
+    for name in wavelets or {}:
+        if name not in _WAVELETS:
+            raise OptionError(f"{name} is no option of tiles; these are: {', '.join(_WAVELETS)}.")
     paths = [os.path.abspath(path) for path in files_of(data)]
     for path in paths:
         if suffix_of(path) in CLOUD_SUFFIXES:

@@ -13,6 +13,7 @@ from wavelet_core.errors import OptionError
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.tiles.index import TileIndex, open_index
 from wavelet_gis.tiles.piece import join
 from wavelet_gis.tiles.plan import Piece, TilePlan
@@ -93,7 +94,8 @@ def extract_region(
                 path=found.folder,
             )
     mesh = TriangleMesh(vertices, faces)
-    return Region(Surface(geos[0], mesh, cells, level), tuple(pieces))
+    geo = replace(geos[0], origin=MeshOrigin(), errors=None, notes=())
+    return Region(Surface(geo, mesh, cells, level), tuple(pieces))
 
 
 def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:
