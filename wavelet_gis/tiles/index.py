@@ -64,13 +64,15 @@ class TileIndex:
     def place_of(self, level: int) -> tuple[int, int]:
         """Return the stage that has a level of the whole, and how far below its finest that is."""
         below = self.n_levels - level
-        for stage in range(self.plan.n_stages):
-            if below <= self.levels_of(stage):
-                return stage, below
+        if not 0 <= level <= self.n_levels:
+            raise InputFileError(
+                f"{self.folder}: there is no level {level}; the levels are 0 to {self.n_levels}."
+            )
+        stage = 0
+        while below > self.levels_of(stage):
             below -= self.levels_of(stage)
-        raise InputFileError(
-            f"{self.folder}: there is no level {level}; the levels are 0 to {self.n_levels}."
-        )
+            stage += 1
+        return stage, below
 
 
 def is_index(path: str | os.PathLike[str]) -> bool:

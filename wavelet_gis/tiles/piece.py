@@ -12,6 +12,8 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -37,6 +39,9 @@ __all__ = ["PIECES", "Joined", "cells_of", "join", "make_piece", "read_record", 
 
 #: Folder of the files of the pieces.
 PIECES = "pieces"
+
+#: What GeoPackages are dated by, where it is set.
+_EPOCH = "SOURCE_DATE_EPOCH"
 
 _BYTES_AT_ONCE = 1 << 22
 
@@ -86,21 +91,34 @@ def make_piece(folder: str, plan_text: str, piece: Piece, inputs: dict[str, str]
     place = Path(folder) / PIECES / f"{piece.name}.gpkg"
     place.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with collected():
+        with collected(), _dated(plan):
             geo = _tile(plan, piece) if piece.stage == 0 else _group(folder, plan, piece, inputs)
-        if geo is None:
-            record |= {"status": "empty"}
-        else:
-            with new_file(place, overwrite=True) as scratch:
-                write_pyramid_file(scratch, geo, "none")
-            record |= {"status": "whole", **_figures(geo), "sha256": sha256_of(place)}
-            record["n_bytes"] = place.stat().st_size
+            if geo is None:
+                record |= {"status": "empty"}
+            else:
+                with new_file(place, overwrite=True) as scratch:
+                    write_pyramid_file(scratch, geo, "none")
+                record |= {"status": "whole", **_figures(geo), "sha256": sha256_of(place)}
+                record["n_bytes"] = place.stat().st_size
     except WaveletError as error:
         record |= {"status": "failed", "reason": " ".join(str(error).split())}
     record["seconds"] = round(perf_counter() - began, 3)
     with new_file(place.with_suffix(".json"), overwrite=True) as scratch:
         write_text(scratch, json.dumps(record, sort_keys=True))
     return record
+
+
+@contextmanager
+def _dated(plan: TilePlan) -> Iterator[None]:
+    """Date files by the newest input, so that a piece made again has the same bytes."""
+    if _EPOCH in os.environ:
+        yield
+        return
+    os.environ[_EPOCH] = str(max(file.changed for file in plan.files) // 10**9)
+    try:
+        yield
+    finally:
+        del os.environ[_EPOCH]
 
 
 def read_record(folder: str | os.PathLike[str], piece: Piece) -> dict[str, Any] | None:

@@ -7,6 +7,7 @@ inputs, and so is one that was half done: its files are written aside.
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -71,7 +72,9 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
     n_losses = 0
     while left:
         n_before = len(left)
-        pool = ProcessPoolExecutor(min(workers, len(left)), mp_context=get_context("spawn"))
+        pool = ProcessPoolExecutor(
+            min(workers, len(left)), mp_context=get_context("spawn"), initializer=_leave_interrupts
+        )
         try:
             futures = {pool.submit(make_piece, *job): job for job in left}
             for future in as_completed(futures):
@@ -89,6 +92,11 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
             pool.shutdown(cancel_futures=True)
 
 
+def _leave_interrupts() -> None:
+    """Leave Ctrl-C to the program, which lets the pieces in flight be finished."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:
     from distributed import Client
     from distributed import as_completed as done
@@ -100,7 +108,7 @@ def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:
             f"{scheduler}: there is no Dask scheduler at this address ({error}); start one with "
             "'dask scheduler', and workers with 'dask worker'."
         ) from error
-    with client:
+    with client, client.as_current():
         futures = [
             client.submit(make_piece, *job, pure=False, retries=_MOST_LOSSES) for job in jobs
         ]

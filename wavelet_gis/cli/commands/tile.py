@@ -15,6 +15,7 @@ from wavelet_gis.cli.commands._options import (
 from wavelet_gis.cli.console import Console
 
 ORDER = 12
+GOES_ON = True
 HELP = "Turn rasters of any size into a tiled pyramid, tile by tile; a second start goes on."
 
 
