@@ -56,7 +56,7 @@ def test_commands_have_the_options_that_are_shown(page):
 
 
 def write_breaklines(folder):
-    """Write a line and a polygon with a hole where dem.tif and, the line, cloud.laz are."""
+    """Write a line, a polygon with a hole, and zones where dem.tif and, the line, cloud.laz are."""
     # dem.tif lies south of the corner, cloud.laz north of it.
     line = shapely.LineString([(500020, 5100090), (500090, 5099990), (500300, 5099700)])
     building = shapely.box(500150, 5099850, 500180, 5099880)
@@ -70,6 +70,14 @@ def write_breaklines(folder):
             geometry_type=shape.geom_type,
             crs="EPSG:32632",
         )
+    pyogrio.raw.write(
+        folder / "zones.gpkg",
+        shapely.to_wkb(np.array([line.buffer(20.0), domain])),
+        [np.array([0.05, 0.5])],
+        ["max_error"],
+        geometry_type="Polygon",
+        crs="EPSG:32632",
+    )
 
 
 @pytest.mark.parametrize("page", RUN)

@@ -21,17 +21,32 @@ from ..parameters.surface_output import (
     surface_figures,
     write_surface,
 )
+from ..parameters.tolerance import (
+    ToleranceInput,
+    add_tolerance_parameters,
+    is_by_place,
+    limits_of,
+    log_zones,
+    take_tolerance,
+    tolerance_refusal,
+)
 from ..ui.enums import POINTS, POLYGONS, REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
 
 if TYPE_CHECKING:
+    from wavelet_gis.workflows.extract import Surface
+    from wavelet_gis.workflows.tolerance.by_place import MaxError
+
+    from ..qgis_io.patience import Work
     from ..ui.dependencies import Package
 
 
 class ExtractLevel(PyramidAlgorithm):
     """Pyramid to the surface at one level."""
+
+    tolerance: ToleranceInput
 
     GROUP = "reconstruction"
 
@@ -84,6 +99,17 @@ class ExtractLevel(PyramidAlgorithm):
                 "above or below the surface, in the unit of elevation."
             ),
         )
+        add_tolerance_parameters(self)
+        self.add(
+            QgsProcessingParameterNumber(
+                "REFINE", tr("Rounds of refinement"), WHOLE_NUMBER, 0, minValue=0
+            ),
+            tr(
+                "With the largest error: how often edges are turned, vertices moved, and taken out "
+                "where it allows. Vertices are then points of the input."
+            ),
+            advanced=True,
+        )
         add_cell_size_parameter(
             self,
             tr(
@@ -123,10 +149,15 @@ class ExtractLevel(PyramidAlgorithm):
 
     def refusal(self, request: Request) -> str | None:
         """Refuse more than one rule."""
-        rules = [request.has("VERTICES_WANTED"), request.has("MAX_ERROR"), request.whole("LEVEL")]
+        has_error = request.has("MAX_ERROR") or is_by_place(request)
+        rules = [request.has("VERTICES_WANTED"), has_error, request.whole("LEVEL")]
         if sum(map(bool, rules)) > 1:
             return tr("Give one of three: a level, a number of vertices, or the largest error.")
-        return super().refusal(request)
+        return tolerance_refusal(request) or super().refusal(request)
+
+    def take_layers(self, request: Request) -> None:
+        """Take from the layers, in their own thread, what reading them needs."""
+        self.tolerance = take_tolerance(request)
 
     def packages(self, request: Request) -> tuple[Package, ...]:
         """Return what writing the mesh needs."""
@@ -136,17 +167,31 @@ class ExtractLevel(PyramidAlgorithm):
         """Synthesise the level and write what was asked for."""
         from wavelet_gis.workflows.extract import extract
 
-        vertices, max_error = request.whole("VERTICES_WANTED"), request.number("MAX_ERROR")
-        is_level = vertices is None and max_error is None
+        vertices = request.whole("VERTICES_WANTED")
+        max_error: MaxError | None = request.number("MAX_ERROR")
+        by_place = is_by_place(request)
+        is_level = vertices is None and max_error is None and not by_place
         geo = self.geo_pyramid(request, (request.whole("LEVEL") or 0) if is_level else None)
         log_levels(request, geo)
         request.stage(tr("Synthesising the surface"))
         level = checked_level(geo, request.whole("LEVEL") or 0) if is_level else None
-        surface = request.computed(
-            lambda work: extract(geo, level=level, vertices=vertices, max_error=max_error),
-            0.05,
-            0.6,
-        )
+        if by_place:
+            finest = request.computed(lambda work: geo.pyramid.synthesise(), 0.05, 0.1)
+            max_error = limits_of(request, self.tolerance, geo, finest)
+        refine = 0 if max_error is None else request.whole("REFINE")
+
+        def compute(work: Work) -> Surface:
+            return extract(
+                geo,
+                level=level,
+                vertices=vertices,
+                max_error=max_error,
+                refine=refine,
+                progress=work.progress,
+            )
+
+        surface = request.computed(compute, 0.1, 0.6)
+        log_zones(request, surface)
         request.figures = {**surface_figures(surface), "FOUND_LEVEL": surface.level}
         results = write_surface(request, surface)
         if not results:

@@ -23,6 +23,15 @@ from ..parameters.surface_output import (
     surface_figures,
     write_surface,
 )
+from ..parameters.tolerance import (
+    ToleranceInput,
+    add_tolerance_parameters,
+    is_by_place,
+    limits_of,
+    log_zones,
+    take_tolerance,
+    tolerance_refusal,
+)
 from ..ui.enums import POLYGONS, REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
@@ -32,11 +41,13 @@ if TYPE_CHECKING:
     from wavelet_gis.model.terrain import Terrain
     from wavelet_gis.workflows.options import WaveletOptions
     from wavelet_gis.workflows.simplify import Simplified
+    from wavelet_gis.workflows.tolerance.by_place import MaxError
 
     from ..qgis_io.patience import Work
     from ..ui.dependencies import Package
 
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
+IN_RULES = (*RULES, "ZONES", "TOLERANCE")
 #: Share of the vertices that stays where no rule is given.
 DEFAULT_SHARE = 0.05
 
@@ -46,6 +57,7 @@ class SimplifyDem(DemInput):
 
     GROUP = "analysis"
     PAGE = "surface"
+    tolerance: ToleranceInput
     #: Whether the TIN is what a first click gives.
     IS_TIN_BY_DEFAULT: ClassVar[bool] = True
 
@@ -96,6 +108,7 @@ class SimplifyDem(DemInput):
             QgsProcessingParameterNumber("RMSE", tr("RMSE"), REAL_NUMBER, None, True, 0.0),
             tr("Root mean square error over all cells or points, in the unit of elevation."),
         )
+        add_tolerance_parameters(self)
         add_design_parameters(self)
         self.add(
             QgsProcessingParameterBoolean("FIT", tr("Fit the heights to all that is given"), True),
@@ -187,9 +200,16 @@ class SimplifyDem(DemInput):
 
     def refusal(self, request: Request) -> str | None:
         """Refuse more than one rule."""
-        if sum(request.has(name) for name in RULES) > 1:
+        by_place = is_by_place(request)
+        rules = request.has("VERTICES"), request.has("MAX_ERROR") or by_place, request.has("RMSE")
+        if sum(rules) > 1:
             return tr("Give one of three: the number of vertices, the largest error, or the RMSE.")
-        return None
+        return tolerance_refusal(request)
+
+    def take_layers(self, request: Request) -> None:
+        """Take from the layers, in their own thread, what reading them needs."""
+        super().take_layers(request)
+        self.tolerance = take_tolerance(request)
 
     def packages(self, request: Request) -> tuple[Package, ...]:
         """Return what writing the mesh needs."""
@@ -207,7 +227,10 @@ class SimplifyDem(DemInput):
             "fit": tr("Refining the TIN"),
             "errors": tr("Measuring the errors"),
         }
-        vertices, max_error = _vertices(request, terrain), request.number("MAX_ERROR")
+        vertices = _vertices(request, terrain)
+        max_error: MaxError | None = request.number("MAX_ERROR")
+        if is_by_place(request):
+            max_error = limits_of(request, self.tolerance, terrain, terrain.mesh)
         max_rms, fit = request.number("RMSE"), request.flag("FIT")
         refine, keep_points = request.whole("REFINE"), request.flag("KEEP_POINTS")
         options: WaveletOptions = {
@@ -237,6 +260,7 @@ class SimplifyDem(DemInput):
             "N_LEVELS": simplified.geo.pyramid.n_levels,
         }
         request.figures = figures
+        log_zones(request, simplified)
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:
@@ -257,6 +281,6 @@ class SimplifyDem(DemInput):
 
 def _vertices(request: Request, terrain: Terrain) -> int | None:
     """Return the number of vertices that is wanted; None where another rule is given."""
-    if any(request.has(name) for name in RULES):
+    if any(request.has(name) for name in IN_RULES):
         return request.whole("VERTICES")
     return max(round(DEFAULT_SHARE * terrain.mesh.n_vertices), 3)

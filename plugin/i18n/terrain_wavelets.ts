@@ -885,6 +885,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Rounds of refinement</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Instead of a level, give a number of vertices or the largest error, and you get a size between two levels. The log shows how large and how accurate each level is; level 0 is the coarsest.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -911,6 +916,11 @@
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Vertices of the level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>With the largest error: how often edges are turned, vertices moved, and taken out where it allows. Vertices are then points of the input.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1356,11 +1366,6 @@
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Root mean square error over all cells or points, in the unit of elevation.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Rounds of refinement</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1846,6 +1851,56 @@
   <message>
     <location filename="../../plugin/parameters/surface_output.py"/>
     <source>RMSE {}, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Field with the largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Give a raster of largest errors, or one largest error, not both.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Give zones and the field with their largest error, or neither.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Instead of one number: the largest error by place, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>No point of the terrain is inside a zone; check that the layers overlap.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Of the zones, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Polygons with a largest error of their own; where several overlap, the least counts. &lt;i&gt;Largest error&lt;/i&gt; holds outside.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Raster of largest errors</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Within {:g}: {} of {} points are vertices; RMSE {:.4g}, largest error {:.4g}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Zones of other accuracy</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -885,6 +885,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Rounds of refinement</source>
+    <translation>Runden der Verfeinerung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Instead of a level, give a number of vertices or the largest error, and you get a size between two levels. The log shows how large and how accurate each level is; level 0 is the coarsest.</source>
     <translation>Setzt das Gelände in einer Stufe einer Pyramide zusammen und gibt es als Dreiecke, Punkte, Raster oder als Netzdatei für hydraulische Modelle. Statt einer Stufe geben Sie eine Anzahl von Punkten oder den größten Fehler und erhalten eine Größe zwischen zwei Stufen. Das Protokoll zeigt, wie groß und wie genau jede Stufe ist; Stufe 0 ist die gröbste.</translation>
   </message>
@@ -912,6 +917,11 @@
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Vertices of the level</source>
     <translation>Punkte der Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>With the largest error: how often edges are turned, vertices moved, and taken out where it allows. Vertices are then points of the input.</source>
+    <translation>Mit dem größten Fehler: wie oft Kanten umgelegt, Stützpunkte verschoben und, wo er es erlaubt, entfernt werden. Stützpunkte sind dann Punkte der Eingabe.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
@@ -1357,11 +1367,6 @@
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
     <source>Root mean square error over all cells or points, in the unit of elevation.</source>
     <translation>Mittlerer quadratischer Fehler über alle Zellen oder Punkte, in der Einheit der Höhe.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_dem.py"/>
-    <source>Rounds of refinement</source>
-    <translation>Runden der Verfeinerung</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
@@ -1847,6 +1852,56 @@
     <location filename="../../plugin/parameters/surface_output.py"/>
     <source>RMSE {}, in the unit of elevation</source>
     <translation>RMSE {}, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Field with the largest error</source>
+    <translation>Feld mit dem größten Fehler</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Give a raster of largest errors, or one largest error, not both.</source>
+    <translation>Ein Raster größter Fehler oder einen größten Fehler angeben, nicht beides.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Give zones and the field with their largest error, or neither.</source>
+    <translation>Zonen und das Feld mit ihrem größten Fehler angeben, oder keines von beiden.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Instead of one number: the largest error by place, in the unit of elevation.</source>
+    <translation>Statt einer Zahl: der größte Fehler je Ort, in der Einheit der Höhe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>No point of the terrain is inside a zone; check that the layers overlap.</source>
+    <translation>Kein Punkt des Geländes liegt in einer Zone; prüfen, ob die Layer sich überlappen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Of the zones, in the unit of elevation.</source>
+    <translation>Der Zonen, in der Einheit der Höhe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Polygons with a largest error of their own; where several overlap, the least counts. &lt;i&gt;Largest error&lt;/i&gt; holds outside.</source>
+    <translation>Polygone mit einem eigenen größten Fehler; wo mehrere sich überlappen, zählt der kleinste. Außerhalb gilt &lt;i&gt;Größter Fehler&lt;/i&gt;.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Raster of largest errors</source>
+    <translation>Raster größter Fehler</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Within {:g}: {} of {} points are vertices; RMSE {:.4g}, largest error {:.4g}</source>
+    <translation>Bis {:g}: {} von {} Punkten sind Stützpunkte; RMSE {:.4g}, größter Fehler {:.4g}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>Zones of other accuracy</source>
+    <translation>Zonen anderer Genauigkeit</translation>
   </message>
   <message>
     <location filename="../../plugin/provider.py"/>

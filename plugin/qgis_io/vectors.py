@@ -255,6 +255,18 @@ def _features(source: QgsProcessingFeatureSource, feedback: QgsFeedback) -> Iter
             yield feature
 
 
+def number_of(feature: QgsFeature, name: str) -> float | None:
+    """Return the number in a field of a feature; None where it is empty.
+
+    Raises
+    ------
+    QgsProcessingException
+        Something that is no number.
+    """
+    value = feature.attributes()[feature.fields().lookupField(name)]
+    return None if _is_null(value) else _number(feature, value, name)
+
+
 def _number(feature: QgsFeature, value: Any, name: str) -> float:
     try:
         return float(value)

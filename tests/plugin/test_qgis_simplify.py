@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from qgis_layers import Log, hills, numbers, write_raster
+from qgis_layers import Log, hills, numbers, read_raster, write_raster
 
 
 class TestSimplify:
@@ -108,3 +108,62 @@ def test_an_outline_that_may_move_lets_a_level_be_coarser(run, tmp_path):
     assert any("12" in line and "asked" in line for line in log.lines), log.lines
     moved = run("simplifydem", {**parameters, "OUTLINE_TOLERANCE": 40.0})
     assert moved["N_VERTICES"] == 12
+
+
+class TestToleranceByPlace:
+    @pytest.fixture
+    def dem(self, tmp_path):
+        return write_raster(tmp_path / "dem.tif", hills(40, 50).astype("float32"))
+
+    @pytest.fixture
+    def zones(self, dem):
+        """Two overlapping polygons over the west of the DEM, the smaller the stricter."""
+        from qgis.core import QgsFeature, QgsGeometry, QgsRectangle, QgsVectorLayer
+
+        raster = read_raster(dem)
+        west, width, _, north, _, height = raster["transform"]
+        layer = QgsVectorLayer("Polygon?crs=EPSG:2154&field=limit:double", "zones", "memory")
+        for n_columns, limit in ((10, 0.1), (25, 1.0), (40, None)):
+            area = QgsRectangle(west, north + 40 * height, west + n_columns * width, north)
+            feature = QgsFeature(layer.fields())
+            feature.setGeometry(QgsGeometry.fromRect(area))
+            feature.setAttribute("limit", limit)
+            layer.dataProvider().addFeatures([feature])
+        return layer
+
+    def test_zones(self, run, dem, zones, tmp_path):
+        log = Log()
+        parameters = {
+            "INPUT": dem, "MAX_ERROR": 5.0, "ZONES": zones, "ZONE_FIELD": "limit",
+            "RASTER": str(tmp_path / "r.tif"), "TIN": "TEMPORARY_OUTPUT",
+        }  # fmt: skip
+        made = run("simplifydem", parameters, feedback=log)
+        error = np.abs(numbers(made["RASTER"]) - numbers(dem))
+        assert error[:, :10].max() <= 0.1 + 1e-4
+        assert 0.1 < error[:, 10:25].max() <= 1.0 + 1e-4
+        assert 1.0 < error[:, 25:].max() <= 5.0 + 1e-4
+        assert sum("Within" in line for line in log.lines) == 3
+
+    def test_the_same_out_of_a_pyramid_and_by_a_raster(self, run, dem, tmp_path):
+        limits = np.full((40, 50), 4.0, "float32")
+        limits[:, :25] = 0.2
+        raster = write_raster(tmp_path / "limits.tif", limits)
+        pyramid = run("analysedem", {"INPUT": dem, "OUTPUT": str(tmp_path / "p.gpkg")})["OUTPUT"]
+        sizes = {}
+        for name, source in (("simplifydem", dem), ("extractlevel", pyramid)):
+            parameters = {"INPUT": source, "TOLERANCE": raster, "RASTER": str(tmp_path / "r.tif")}
+            if name == "extractlevel":
+                parameters["REFINE"] = 8
+            made = run(name, parameters)
+            error = np.abs(numbers(made["RASTER"]) - numbers(dem))
+            assert (error <= limits + 1e-4).all()
+            sizes[name] = made["N_VERTICES"]
+        assert sizes["extractlevel"] < 1.1 * sizes["simplifydem"]
+
+    def test_what_contradicts_is_refused(self, run, dem, zones, refused):
+        for parameters in (
+            {"ZONES": zones, "MAX_ERROR": 1.0},
+            {"ZONES": zones, "ZONE_FIELD": "limit", "VERTICES": 100},
+            {"TOLERANCE": dem, "MAX_ERROR": 1.0},
+        ):
+            refused("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT", **parameters})

@@ -13,10 +13,11 @@ from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.features.shape import surface_shape
 from wavelet_gis.errors import InputFileError
+from wavelet_gis.model.dem import Dem
 from wavelet_gis.workflows.lines.layer_shapes import POLYGONS, Place, shapes_in_frame
 from wavelet_gis.workflows.tolerance.formula import parsed, value_of
 
-__all__ = ["MaxError", "is_by_place", "tolerances"]
+__all__ = ["MaxError", "is_by_place", "tolerances", "values_in_cells"]
 
 FloatArray = NDArray[np.float64]
 
@@ -139,6 +140,27 @@ def _is_number(max_error: object) -> bool:
     return isinstance(max_error, int | float | np.number) and not isinstance(max_error, bool)
 
 
+def values_in_cells(dem: Dem, x: FloatArray, y: FloatArray) -> FloatArray:
+    """Return the values of the cells that places lie in; NaN where there is none with data.
+
+    Parameters
+    ----------
+    dem : Dem
+        A raster of any numbers.
+    x, y : (n,) float64
+        Places in its CRS.
+    """
+    columns, rows = dem.geometry.cells(x, y)
+    column, row = np.rint(columns), np.rint(rows)
+    n_rows, n_columns = dem.values.shape
+    inside = (column >= 0) & (column < n_columns) & (row >= 0) & (row < n_rows)
+    at = row[inside].astype(np.int64), column[inside].astype(np.int64)
+    values = np.full(len(x), np.nan)
+    found = dem.values[at] * dem.scale + dem.offset
+    values[inside] = np.where(dem.valid[at], found, np.nan)
+    return values
+
+
 def _of_raster(place: Place, mesh: TriangleMesh, path: str | os.PathLike[str]) -> FloatArray:
     """Return the cell that each vertex lies in; NaN where there is none, or none with data."""
     from wavelet_gis.crs.lookup import coordinate_system
@@ -150,14 +172,7 @@ def _of_raster(place: Place, mesh: TriangleMesh, path: str | os.PathLike[str]) -
     there = coordinate_system(told.wkt)
     if there.wkt is not None and place.system.wkt is not None and there.wkt != place.system.wkt:
         x, y = projected(place.system, there, x, y)
-    columns, rows = dem.geometry.cells(x, y)
-    column, row = np.rint(columns), np.rint(rows)
-    n_rows, n_columns = dem.values.shape
-    inside = (column >= 0) & (column < n_columns) & (row >= 0) & (row < n_rows)
-    at = row[inside].astype(np.int64), column[inside].astype(np.int64)
-    values = np.full(mesh.n_vertices, np.nan)
-    found = dem.values[at] * dem.scale + dem.offset
-    values[inside] = np.where(dem.valid[at], found, np.nan)
+    values = values_in_cells(dem, x, y)
     if np.isnan(values).all():
         raise InputFileError(
             "{path}: no input point lies in a cell of this raster; check its extent and its CRS.",
