@@ -2220,6 +2220,11 @@
   </message>
   <message>
     <location filename="../../MESH_FORMATS"/>
+    <source>QGIS (as a mesh layer), D-Flow FM, xugrid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
     <source>QGIS (as a mesh layer), hydraulic models</source>
     <translation type="unfinished"></translation>
   </message>

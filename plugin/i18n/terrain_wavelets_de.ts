@@ -2220,6 +2220,11 @@
   </message>
   <message>
     <location filename="../../MESH_FORMATS"/>
+    <source>QGIS (as a mesh layer), D-Flow FM, xugrid</source>
+    <translation>QGIS (als Netzlayer), D-Flow FM, xugrid</translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
     <source>QGIS (as a mesh layer), hydraulic models</source>
     <translation>QGIS (als Netzlayer), hydraulische Modelle</translation>
   </message>

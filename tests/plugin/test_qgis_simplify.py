@@ -167,3 +167,17 @@ class TestToleranceByPlace:
             {"TOLERANCE": dem, "MAX_ERROR": 1.0},
         ):
             refused("simplifydem", {"INPUT": dem, "TIN": "TEMPORARY_OUTPUT", **parameters})
+
+
+def test_a_ugrid_mesh_opens_as_a_mesh_layer_with_its_crs(run, tmp_path):
+    from qgis.core import QgsMeshDatasetIndex, QgsMeshLayer
+
+    dem = write_raster(tmp_path / "dem.tif", hills(40, 50).astype("float32"))
+    made = run("simplifydem", {"INPUT": dem, "VERTICES": 300, "MESH": str(tmp_path / "a.nc")})
+    layer = QgsMeshLayer(made["MESH"], "mesh", "mdal")
+    assert layer.isValid()
+    assert layer.meshVertexCount() == 300
+    assert layer.crs().authid() == "EPSG:2154"
+    heights = layer.datasetGroupMetadata(QgsMeshDatasetIndex(0))
+    values = numbers(dem)
+    assert values.min() - 5 < heights.minimum() < heights.maximum() < values.max() + 5

@@ -27,6 +27,8 @@ def write_format_one(path, geo):
     metadata["source"] = source
     metadata["format"]["version"] = 1
     metadata.pop("record", None)
+    for name in ("steps", "plan"):
+        metadata["pyramid"].pop(name, None)
     create_geopackage(path)
     with open_for_writing(path) as connection:
         connection.executescript(metadata_tables.SCHEMA)

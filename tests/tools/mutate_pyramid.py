@@ -297,7 +297,7 @@ def read(path):
 
 
 def samples(folder):
-    """Write the files that are mutated: a DEM's, a cloud's and a TIN's."""
+    """Write the files that are mutated: of a DEM, a cloud, TINs of two designs, an altered DEM."""
     from gis.samples import hills, write_las, write_tif
 
     from wavelet_core import analyse
@@ -317,7 +317,10 @@ def samples(folder):
     tin = analyse(mesh_of_hills(12, 12), levels=2, signal="xyz")
     system, frame = CoordinateSystem(), LocalFrame()
     geos.append(GeoPyramid(tin, system, frame, "metre", MeshOrigin(), "tin"))
-    for name, geo in zip(("raster", "cloud", "tin"), geos, strict=True):
+    smooth = analyse(mesh_of_hills(14, 12), levels=3)
+    geos.append(GeoPyramid(smooth, system, frame, "metre", MeshOrigin(), "placed"))
+    geos.append(geos[0].with_pyramid(geos[0].pyramid.with_gains({1: 0.5}), "halved"))
+    for name, geo in zip(("raster", "cloud", "tin", "placed", "altered"), geos, strict=True):
         path = folder / f"{name}.gpkg"
         write_pyramid(path, geo)
         yield path, summary_of(geo)

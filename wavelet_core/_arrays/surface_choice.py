@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._kernels.surface_choice import CANDIDATE, TAKEN
+from .._kernels.surface_choice import CANDIDATE, OUT_OF_QUESTION, TAKEN
 from ._csr import expanded
 from .half_edges import after, before, rings_of
 
@@ -25,6 +25,19 @@ def take_cheapest(start, stop, active, wins, mesh, state):
     ring = rings_of(taken, mesh).ring
     state[ring[ring >= 0]] = 0
     state[taken] = TAKEN
+
+
+def find_first(start, stop, active, mesh, place, wins, rival):
+    ring = rings_of(active, mesh).ring
+    around = np.where(ring >= 0, place[ring], OUT_OF_QUESTION)
+    wins[:] = around.min(axis=1, initial=OUT_OF_QUESTION) > place[active]
+
+
+def take_first(start, stop, active, wins, mesh, place):
+    taken = active[wins]
+    ring = rings_of(taken, mesh).ring
+    place[ring[ring >= 0]] = OUT_OF_QUESTION
+    place[taken] = OUT_OF_QUESTION
 
 
 def measure_rings(start, stop, odd, mesh, size):

@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.partition.recorded`: which collapse looks the best from nearby.
+"""Kernels of :mod:`wavelet_core.partition.questions`: which collapse looks the best from nearby.
 
 A forecast knows the present heights of a vertex and of its ring, and no more: not the points of the
 faces, nor the integrals. So whoever has the level has its forecasts, before it is known what goes.

@@ -190,7 +190,7 @@ def close_face(face, apex, origin, twin, outgoing):
         twin[inward] = outward
     if outward >= 0:
         twin[outward] = inward
-    if outgoing[apex] == half_edge or inward < 0:
+    if outgoing[apex] == half_edge:
         outgoing[apex] = outward
 
 

@@ -2,11 +2,13 @@
 
 import numpy as np
 
-from ._jit import kernel
-from .half_edges import MAX_RING, collapse, meets_link_condition, walk_ring
+from ._jit import inlined, kernel
+from .half_edges import MAX_RING, after, before, collapse, meets_link_condition, walk_ring
 
 CANDIDATE = 1
 TAKEN = 2
+# after the place of any vertex
+OUT_OF_QUESTION = np.uint64(2**64 - 1)
 
 
 # Which of the candidates still in question are cheaper than all such neighbours?
@@ -43,6 +45,50 @@ def take_cheapest(start, stop, active, wins, mesh, state):
         for k in range(size):
             state[ring[k]] = 0
         state[active[q]] = TAKEN
+
+
+# Which of the vertices still in question come before all such neighbours?
+# active (k,) int32; place (n,) uint64, all different, OUT_OF_QUESTION for the others; wins (k,)
+# bool, filled; rival (n,) int32, kept from call to call: a neighbour that came before, at first
+# the vertex itself. While it is in question, the others need not be looked at.
+@kernel
+def find_first(start, stop, active, mesh, place, wins, rival):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    for q in range(start, stop):
+        v = active[q]
+        if place[rival[v]] >= place[v]:
+            rival[v] = neighbour_before(v, origin, twin, outgoing, place)
+        wins[q] = rival[v] == v
+
+
+# A neighbour of v that comes before it; v itself if there is none
+@inlined
+def neighbour_before(v, origin, twin, outgoing, place):
+    half_edge, own = outgoing[v], place[v]
+    for _ in range(MAX_RING):
+        u = origin[after(half_edge)]
+        if place[u] < own:
+            return u
+        last = before(half_edge)
+        half_edge = twin[last]
+        if half_edge < 0:
+            return origin[last] if place[origin[last]] < own else v
+        if half_edge == outgoing[v]:
+            break
+    return v
+
+
+# Take the winners and their neighbours out of question
+@kernel
+def take_first(start, stop, active, wins, mesh, place):
+    origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
+    ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
+    for q in range(start, stop):
+        if wins[q]:
+            size, _ = walk_ring(active[q], origin, twin, outgoing, ring, spoke)
+            for k in range(size):
+                place[ring[k]] = OUT_OF_QUESTION
+            place[active[q]] = OUT_OF_QUESTION
 
 
 # size (n_odd,) int64, filled

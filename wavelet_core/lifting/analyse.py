@@ -24,13 +24,12 @@ from ..progress import Progress, report
 from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
 from .pyramid import Pyramid, PyramidPart
-from .signal import SIGNALS
+from .recorded import Recorder
+from .signal import SIGNALS, Normalisation
 from .step import Step, analyse_level
 
 #: Share of the vertices that one level is expected to keep, for the progress bar alone.
 EXPECTED_KEPT = 0.73
-#: Attributes of weight 0 still count this little, so that they can be lifted beside z.
-LEAST_WEIGHT = 1e-9
 
 
 def analyse(
@@ -55,6 +54,7 @@ def analyse(
     removal_fraction: float | None = None,
     outline_tolerance: float = 0.0,
     integrals: ArrayLike | None = None,
+    record: bool = False,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
 
@@ -120,6 +120,10 @@ def analyse(
         Of the scaling functions at the vertices, where the mesh is itself a level of a pyramid, or
         of several side by side; by default 1, as of an input. The pyramid keeps them
         (`Pyramid.part`), so that their sum with the coefficients stays what it was.
+    record : bool
+        Keep what tells the pyramid in a file (:attr:`Pyramid.told`), which takes half as much time
+        again and is otherwise worked out by whoever writes the file. There is none but for
+        ``partition="surface"`` with its own filters.
 
     Returns
     -------
@@ -177,7 +181,12 @@ def analyse(
     announce_engine(mesh.n_vertices)
     with fitting_engine(mesh.n_vertices):
         return _Analysis(
-            mesh, options, _locked_mask(locked, mesh), progress, _begun_integrals(integrals, mesh)
+            mesh,
+            options,
+            _locked_mask(locked, mesh),
+            progress,
+            _begun_integrals(integrals, mesh),
+            record,
         ).run()
 
 
@@ -191,6 +200,7 @@ class _Analysis:
         locked: NDArray[np.bool_],
         progress: Progress | None,
         integrals: FloatArray | None,
+        is_recorded: bool,
     ) -> None:
         self._mesh = mesh
         self._options = options
@@ -209,6 +219,9 @@ class _Analysis:
         self._integrals = np.ones(mesh.n_vertices) if integrals is None else integrals
         self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
+        self._recorder: Recorder | None = None
+        if is_recorded and options.is_error_guided and integrals is None:
+            self._recorder = Recorder(mesh, locked, options.update, options.as_dict())
 
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
@@ -233,13 +246,16 @@ class _Analysis:
             if self._begun is None
             else PyramidPart(np.arange(self._mesh.n_vertices, dtype=np.int32), frozen(self._begun)),
         )
-        record = stop_record(
+        stop = stop_record(
             self._stopped_by,
             pyramid._faces_of(0),
             self._all_locked[pyramid.vertex_ids(0)],
             self._options.target_vertices,
         )
-        return replace(pyramid, stop=record)
+        pyramid = replace(pyramid, stop=stop)
+        if self._recorder is None:
+            return pyramid
+        return replace(pyramid, told=self._recorder.told(pyramid.steps, pyramid.coarse))
 
     def _steps(self) -> list[Step]:
         """Partition, predict and update, each by its own rule."""
@@ -285,6 +301,7 @@ class _Analysis:
             rules,
             self._report_size,
             self._begun,
+            self._recorder,
         )
         self._coefficients = result.coarse
         self._stopped_by = result.stopped_by
@@ -396,51 +413,6 @@ class _Analysis:
             gone = n_input - (len(self._coefficients) if n_vertices is None else n_vertices)
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
         report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
-
-
-def height_weights(extent: FloatArray, attribute_weights: Sequence[float]) -> FloatArray:
-    """Return what errors of z and of each attribute count for against errors of z.
-
-    Parameters
-    ----------
-    extent : (1 + n_attributes,) float64
-        Range of z and of the attributes.
-    attribute_weights : sequence of float
-        What a change across the range of each attribute counts for against one across that of z.
-    """
-    weights = np.array((1.0, *attribute_weights)) / np.where(extent > 0, extent, 1.0)
-    height = extent[0] if extent[0] > 0 else 1.0
-    weights = np.maximum(weights, LEAST_WEIGHT) * height
-    weights[0] = 1.0
-    return weights
-
-
-class Normalisation:
-    """Centre and range of the input's columns, by which cost and prediction measure."""
-
-    def __init__(self, mesh: TriangleMesh, attribute_weights: Sequence[float]) -> None:
-        columns = [*mesh.vertices.T, *mesh.attributes.T]
-        low = np.array([column.min() for column in columns])
-        extent = np.array([np.ptp(column) for column in columns])
-        self._centre = low + extent / 2
-        weights = np.array((1.0, 1.0, 1.0, *attribute_weights))
-        self._factor = weights / np.where(extent > 0, extent, 1.0)
-        self._height_weights = height_weights(extent[2:], attribute_weights)
-
-    def height_weights(self) -> FloatArray:
-        """Return what errors of z and of each attribute count for against errors of z."""
-        return self._height_weights
-
-    def points(
-        self, coefficients: FloatArray, horizontal: FloatArray | None
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return normalised x, y, z and attributes; and x, y centred only."""
-        if horizontal is not None:
-            coefficients = np.hstack([horizontal, coefficients])
-        points = coefficients - self._centre
-        plan = points[:, :2].copy()
-        points *= self._factor
-        return points, plan
 
 
 def _locked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.bool_]:

@@ -3,7 +3,7 @@
 An error-guided pyramid follows from its input and from which collapse was taken when: weights,
 details, integrals and coarse coefficients are worked out by the operations of the analysis, in its
 order, so they come out to the bit. Which collapses those were is told by few symbols, see
-`wavelet_core.partition.recorded`.
+`wavelet_core.partition.questions`.
 
 So that coarse levels are had without the input, a large pyramid is recorded in parts: each begins
 at a level that is stored for itself, with what the steps below need of those above.
@@ -11,6 +11,7 @@ at a level that is stored for itself, with what the steps below need of those ab
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -20,15 +21,26 @@ from numpy.typing import NDArray
 from .._validate import FloatArray, frozen
 from ..errors import PyramidError
 from ..mesh.triangle_mesh import TriangleMesh
-from ..partition._mutable_level import HEIGHT_STEP, CollapseStep
-from ..partition.recorded import Answers, Manner, RecordedLevel, Start, record, replay
+from ..partition._mutable_level import HEIGHT_STEP, CollapseStep, SurfaceLevel
+from ..partition.questions import Answers, Collapses, Writer, ask
+from ..partition.recorded import Manner, RecordedLevel, Start, record, replay, takes
 from ..partition.stopping import StopRecord
 from ..progress import Progress, report
-from .analyse import Normalisation
 from .pyramid import Pyramid, PyramidPart
+from .signal import Normalisation
 from .step import Step
 
-__all__ = ["Frame", "Record", "RecordPart", "part_of", "pyramid_of", "record_of"]
+__all__ = [
+    "Frame",
+    "Record",
+    "RecordPart",
+    "Recorder",
+    "Told",
+    "is_error_guided",
+    "part_of",
+    "pyramid_of",
+    "record_of",
+]
 
 #: A part begins at the first level with no more than this share of the vertices that the part
 #: before begins with: it takes some 130 bits a vertex of its own, so one or two for each of all.
@@ -79,6 +91,99 @@ class Record(NamedTuple):
     parts: tuple[RecordPart, ...]
 
 
+class Told(NamedTuple):
+    """A record that was taken during the analysis, and what it was taken of.
+
+    record : Record
+    steps, coarse : of the pyramid; of any other it tells nothing
+    columns : bytes, digest of the input's z and attributes
+    """
+
+    record: Record
+    steps: tuple[Step, ...]
+    coarse: FloatArray
+    columns: bytes
+
+    def fits(self, pyramid: Pyramid, mesh: TriangleMesh) -> bool:
+        """Whether it tells that pyramid to whoever has that input."""
+        is_of_it = self.steps is pyramid.steps and self.coarse is pyramid.coarse
+        return is_of_it and self.columns == _digest(_columns(mesh))
+
+
+class Recorder:
+    """Takes the record of a pyramid during its analysis, while the state of each level is at hand.
+
+    The first part is told by what the analysis itself works on; later ones, which begin with few
+    vertices, by a level beside it that begins as that of a reader does.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The input.
+    locked : (n,) bool
+    update : str
+    parameters : mapping
+        Of the pyramid that will be.
+    """
+
+    def __init__(
+        self,
+        mesh: TriangleMesh,
+        locked: NDArray[np.bool_],
+        update: str,
+        parameters: Mapping[str, Any],
+    ) -> None:
+        self._mesh, self._locked = mesh, locked
+        self._frame = frame_of(mesh, parameters["attribute_weights"])
+        self._manner = _manner_of(update, parameters, self._frame)
+        self._columns = _columns(mesh)
+        self._parts: list[RecordPart] = []
+        self._writer, self._begun = Writer(), dict[str, Any]()
+        self._size = mesh.n_vertices
+        self._level: RecordedLevel | None = None
+        self._next: dict[str, Any] | None = None  # a part that begins if another step follows
+        self._n_asked = 0
+        self._failed = False
+
+    def look(self, level: SurfaceLevel, collapses: Collapses) -> None:
+        """Answer the questions about collapses that are about to be taken on a level."""
+        if self._failed or self._level is not None or self._next is not None:
+            return
+        self._n_asked = len(collapses.odd)
+        try:
+            ask(self._writer, level.sight(), collapses)
+        except PyramidError:
+            self._failed = True
+
+    def took(self, level: SurfaceLevel, step: CollapseStep) -> None:
+        """Keep a step, in input units, that ended at a level."""
+        if self._failed:
+            return
+        if self._next is not None:
+            self._begin_part(self._next)
+            self._next = None
+        if self._level is None:
+            self._failed = len(step.odd) != self._n_asked  # the link condition forbade some
+        else:
+            self._failed = not takes(self._level, self._writer, step, self._frame.weights)
+        if _begins_part(level.n_vertices, self._size, self._mesh.n_vertices, self._manner):
+            self._next = _begin(level, level.ids, self._columns, self._locked, self._manner)
+
+    def _begin_part(self, begun: dict[str, Any]) -> None:
+        self._parts.append(RecordPart(self._writer.answers(), **self._begun))
+        self._writer, self._begun, self._size = Writer(), begun, len(begun["ids"])
+        plan, locked = self._mesh.vertices[begun["ids"], :2], self._locked[begun["ids"]]
+        start = _part_start(begun, plan, locked, self._frame, self._manner)
+        self._level = RecordedLevel(start, self._manner)
+
+    def told(self, steps: tuple[Step, ...], coarse: FloatArray) -> Told | None:
+        """Return the record of a pyramid whose steps were kept; None where none tells it."""
+        if self._failed or not steps:
+            return None
+        parts = (*self._parts, RecordPart(self._writer.answers(), **self._begun))
+        return Told(Record(self._frame, parts), steps, coarse, _digest(self._columns))
+
+
 def frame_of(mesh: TriangleMesh, attribute_weights: Sequence[float]) -> Frame:
     """Return the frame in which the levels of a mesh's pyramid are worked on."""
     plan = mesh.vertices[:, :2]
@@ -106,13 +211,15 @@ def record_of(
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
     """
-    if not _is_error_guided(pyramid) or pyramid.n_levels == 0 or pyramid.part is not None:
+    if not is_error_guided(pyramid) or pyramid.n_levels == 0 or pyramid.part is not None:
         return None
     horizontal = pyramid.horizontal
     if horizontal is None or not np.array_equal(horizontal, mesh.vertices[:, :2]):
         return None
     if not np.array_equal(pyramid.faces, mesh.faces):
         return None
+    if pyramid.told is not None and pyramid.told.fits(pyramid, mesh):
+        return pyramid.told.record
     frame = frame_of(mesh, pyramid.parameters["attribute_weights"])
     manner = _manner(pyramid, frame)
     columns = _columns(mesh)
@@ -121,7 +228,7 @@ def record_of(
     level = RecordedLevel(_input_start(mesh, frame, locked), manner)
     parts: list[RecordPart] = []
     begun: dict[str, Any] = {}
-    bounds = _part_bounds(pyramid)
+    bounds = _part_bounds(pyramid, manner)
     for first, last in zip(bounds, (*bounds[1:], 0), strict=True):
         if first < pyramid.n_levels:
             ids = ids[level.ids]
@@ -262,7 +369,8 @@ def part_of(
 _CANCELLED = "writing the pyramid was cancelled; nothing was kept."
 
 
-def _is_error_guided(pyramid: Pyramid) -> bool:
+def is_error_guided(pyramid: Pyramid) -> bool:
+    """Whether a pyramid's collapses are those of an error-guided analysis, whatever its heights."""
     parameters = pyramid.parameters
     names = ("partition", "prediction", "signal")
     return (
@@ -308,7 +416,7 @@ def _unchanged(locked: NDArray[np.bool_], manner: Manner) -> NDArray[np.bool_]:
 
 
 def _begin(
-    level: RecordedLevel,
+    level: SurfaceLevel,
     ids: NDArray[np.int32],
     columns: FloatArray,
     locked: NDArray[np.bool_],
@@ -355,20 +463,27 @@ def _start_of(
     return _part_start(part._asdict(), plan, locked[part.ids], frame, manner)
 
 
-def _part_bounds(pyramid: Pyramid) -> tuple[int, ...]:
+def _part_bounds(pyramid: Pyramid, manner: Manner) -> tuple[int, ...]:
     """Return the levels at which parts begin, the finest first."""
     bounds = [pyramid.n_levels]
-    size = pyramid.n_vertices(pyramid.n_levels)
-    if size < LEAST_IN_PARTS or pyramid.parameters["outline_tolerance"]:
-        return tuple(bounds)  # a tolerance is measured from the outline of the input
+    n_input = size = pyramid.n_vertices(pyramid.n_levels)
     for level in range(pyramid.n_levels - 1, 0, -1):
         n_vertices = pyramid.n_vertices(level)
-        if n_vertices < LEAST_IN_PART:
-            break
-        if n_vertices <= size * PART_SHARE:
+        if _begins_part(n_vertices, size, n_input, manner):
             bounds.append(level)
             size = n_vertices
     return tuple(bounds)
+
+
+def _begins_part(n_vertices: int, size: int, n_input: int, manner: Manner) -> bool:
+    """Whether a part begins at a level, the one before having begun with ``size`` vertices."""
+    if n_input < LEAST_IN_PARTS or manner.outline_tolerance:
+        return False  # a tolerance is measured from the outline of the input
+    return LEAST_IN_PART <= n_vertices <= size * PART_SHARE
+
+
+def _digest(columns: FloatArray) -> bytes:
+    return hashlib.sha256((columns + 0.0).data).digest()  # 0 and -0 alike
 
 
 def _collapse_step(step: Step) -> CollapseStep:

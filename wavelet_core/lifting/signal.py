@@ -1,10 +1,18 @@
-"""What is lifted: elevation and attributes, or all coordinates."""
+"""What is lifted, elevation and attributes or all coordinates, and by what it is measured."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from .._table import Table
+from .._validate import FloatArray
+from ..mesh.triangle_mesh import TriangleMesh
+
+#: Attributes of weight 0 still count this little, so that they can be lifted beside z.
+LEAST_WEIGHT = 1e-9
 
 
 class Signal(NamedTuple):
@@ -37,3 +45,48 @@ SIGNALS = Table(
         ),
     ),
 )
+
+
+def height_weights(extent: FloatArray, attribute_weights: Sequence[float]) -> FloatArray:
+    """Return what errors of z and of each attribute count for against errors of z.
+
+    Parameters
+    ----------
+    extent : (1 + n_attributes,) float64
+        Range of z and of the attributes.
+    attribute_weights : sequence of float
+        What a change across the range of each attribute counts for against one across that of z.
+    """
+    weights = np.array((1.0, *attribute_weights)) / np.where(extent > 0, extent, 1.0)
+    height = extent[0] if extent[0] > 0 else 1.0
+    weights = np.maximum(weights, LEAST_WEIGHT) * height
+    weights[0] = 1.0
+    return weights
+
+
+class Normalisation:
+    """Centre and range of the input's columns, by which cost and prediction measure."""
+
+    def __init__(self, mesh: TriangleMesh, attribute_weights: Sequence[float]) -> None:
+        columns = [*mesh.vertices.T, *mesh.attributes.T]
+        low = np.array([column.min() for column in columns])
+        extent = np.array([np.ptp(column) for column in columns])
+        self._centre = low + extent / 2
+        weights = np.array((1.0, 1.0, 1.0, *attribute_weights))
+        self._factor = weights / np.where(extent > 0, extent, 1.0)
+        self._height_weights = height_weights(extent[2:], attribute_weights)
+
+    def height_weights(self) -> FloatArray:
+        """Return what errors of z and of each attribute count for against errors of z."""
+        return self._height_weights
+
+    def points(
+        self, coefficients: FloatArray, horizontal: FloatArray | None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return normalised x, y, z and attributes; and x, y centred only."""
+        if horizontal is not None:
+            coefficients = np.hstack([horizontal, coefficients])
+        points = coefficients - self._centre
+        plan = points[:, :2].copy()
+        points *= self._factor
+        return points, plan

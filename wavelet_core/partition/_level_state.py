@@ -75,7 +75,8 @@ class FaceState(NamedTuple):
 
     lives : bool, whether the face belongs to the level
     changed : bool, whether its corners or points have changed since it was summed
-    squared : float64, sum of the squared errors of its points over all channels
+    squared : float64, sum of the squared errors of its points over all channels; with the two
+        below it is empty where points are not kept
     squared_z : float64, the same of heights alone; empty where there is no other channel
     largest_z : float64, the largest squared height error
     """
@@ -87,14 +88,15 @@ class FaceState(NamedTuple):
     largest_z: FloatArray
 
     @classmethod
-    def of_input(cls, n_faces: int, n_channels: int) -> FaceState:
-        """Return the state before the first step, without errors."""
+    def of_input(cls, n_faces: int, n_channels: int, *, with_errors: bool) -> FaceState:
+        """Return the state before the first step; without room for errors where nobody asks."""
+        n_measured = n_faces if with_errors else 0
         return cls(
             lives=np.ones(n_faces, dtype=bool),
             changed=np.zeros(n_faces, dtype=bool),
-            squared=np.zeros(n_faces),
-            squared_z=np.zeros(n_faces if n_channels > 1 else 0),
-            largest_z=np.zeros(n_faces),
+            squared=np.zeros(n_measured),
+            squared_z=np.zeros(n_measured if n_channels > 1 else 0),
+            largest_z=np.zeros(n_measured),
         )
 
     def packed(self, faces: NDArray[np.int64]) -> FaceState:

@@ -41,6 +41,7 @@ from .._validate import FloatArray, frozen
 from ..mesh.half_edges import half_edges_of
 from ._level_state import FaceState, VertexState
 from .outline import tolerant_outline
+from .questions import Collapses, Sight
 
 #: The costs of a level are limited by those of the cheapest vertices that it may take: by the
 #: highest cost of this part of them, one sixteenth. From a half to one sixty-fourth the RMSE
@@ -146,11 +147,12 @@ class SurfaceLevel:
         """Make the arrays; x, y and heights are from their local origins."""
         n_vertices, n_faces, n_channels = len(plan), len(faces), local.shape[1]
         self._mesh, n_fans = half_edges_of(faces, n_vertices)
+        z = local.copy()
         self._surface = Surface(
             np.ascontiguousarray(plan[:, 0]),
             np.ascontiguousarray(plan[:, 1]),
-            local.copy(),
-            local,
+            z,
+            local if self.keeps_points else z,  # nobody measures
         )
         self._points = FacePoints(
             np.zeros(n_faces, np.int32),
@@ -164,7 +166,7 @@ class SurfaceLevel:
         self.n_vertices = n_vertices
         self._height_step = height_step
         self._vertices = VertexState.of_input(locked, locked | (n_fans != 1))
-        self._faces = FaceState.of_input(n_faces, n_channels)
+        self._faces = FaceState.of_input(n_faces, n_channels, with_errors=self.keeps_points)
         self._outline = tolerant_outline(
             outline_tolerance, self._surface.x, self._surface.y, self._mesh, n_fans
         )
@@ -191,6 +193,40 @@ class SurfaceLevel:
     def heights(self) -> FloatArray:
         """Present heights and weighted attributes, one row a vertex of the level."""
         return self._surface.z[self._vertices.lives] + self._z_origin
+
+    @property
+    def local_heights(self) -> FloatArray:
+        """Heights and weighted attributes of the level's vertices, from their local origin."""
+        return self._surface.z[self._vertices.lives]
+
+    @property
+    def integrals(self) -> FloatArray:
+        """Integrals of the level's scaling functions."""
+        return self._vertices.integrals[self._vertices.lives]
+
+    @property
+    def faces(self) -> NDArray[np.int32]:
+        """Faces of the level, in places among its vertices."""
+        position = np.cumsum(self._vertices.lives, dtype=np.int32) - np.int32(1)
+        return position[self._mesh.origin.reshape(-1, 3)[self._faces.lives]]
+
+    def sight(self) -> Sight:
+        """Return what is known of the level before its step, which changes its arrays."""
+        vertices = self._vertices
+        return Sight(
+            self._mesh,
+            self._surface,
+            self._outline,
+            vertices.stays,
+            vertices.locked,
+            vertices.key,
+            np.flatnonzero(vertices.lives).astype(np.int32),
+            self._height_step,
+        )
+
+    def collapses(self, odd: NDArray[np.int32]) -> Collapses:
+        """Return vertices that go, and onto which."""
+        return Collapses(odd, self._vertices.target[odd])
 
     def costs(self, slots: NDArray[np.int32]) -> FloatArray:
         """Return the costs of vertices, as last ranked."""

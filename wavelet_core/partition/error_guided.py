@@ -8,13 +8,14 @@ lies in exactly one face of each level and follows it through the collapses.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._validate import FloatArray, frozen
 from ._mutable_level import CollapseStep, LevelFigures, SurfaceLevel
+from .questions import Collapses
 
 #: Share of the vertices that a level may take, at most, unless more cost nothing. Half of them is
 #: 1 to 6 % worse at the same size and takes 25 % less time. The comparisons that this and the
@@ -121,6 +122,16 @@ class SurfaceAnalysis(NamedTuple):
     figures: list[LevelFigures]
 
 
+class Recorder(Protocol):
+    """Is told what an analysis does; see `wavelet_core.lifting.recorded.Recorder`."""
+
+    def look(self, level: SurfaceLevel, collapses: Collapses) -> None:
+        """See which collapses are about to be taken on a level."""
+
+    def took(self, level: SurfaceLevel, step: CollapseStep) -> None:
+        """Keep a step, in input units, that ended at a level."""
+
+
 class _Choice(NamedTuple):
     """Vertices that are to go; whether they are no more than flat parts; how far to rank next."""
 
@@ -138,6 +149,7 @@ def analyse_surface(
     rules: SurfaceRules,
     report: Callable[[int], None],
     integrals: FloatArray | None = None,
+    recorder: Recorder | None = None,
 ) -> SurfaceAnalysis:
     """Return the coarse coefficients and the steps of a surface-guided analysis.
 
@@ -157,6 +169,8 @@ def analyse_surface(
         Called with the present number of vertices between the passes; may raise to stop.
     integrals : ndarray, shape (n_vertices,), optional
         Of the scaling functions of the input; by default 1.
+    recorder : Recorder, optional
+        Is told every step.
     """
     level = SurfaceLevel(
         plan, columns * weights, faces, locked, rules.with_update, rules.outline_tolerance
@@ -179,12 +193,14 @@ def analyse_surface(
             stopped_by = "tolerance" if rules.has_tolerance else "nothing_left"
             break
         report(level.n_vertices)
-        taken = _take_step(level, rules, choice.odd)
+        taken = _take_step(level, rules, choice.odd, recorder)
         if taken is None:
             stopped_by = "tolerance"
             break
         level, step = taken
         steps.append(step._replace(details=frozen(step.details / weights)))
+        if recorder is not None:
+            recorder.took(level, steps[-1])
         figures.append(level.figures())
         n_flat += choice.is_flat
         cutoff = choice.next_cutoff
@@ -232,10 +248,12 @@ def _candidates(
 
 
 def _take_step(
-    level: SurfaceLevel, rules: SurfaceRules, odd: NDArray[np.int32]
+    level: SurfaceLevel, rules: SurfaceRules, odd: NDArray[np.int32], recorder: Recorder | None
 ) -> tuple[SurfaceLevel, CollapseStep] | None:
     """Return the level after the step, and the step; None where no part of it keeps a tolerance."""
     if not rules.needs_proof:
+        if recorder is not None:
+            recorder.look(level, level.collapses(odd))
         return level, level.remove(odd)
     cheapest_first = odd[np.argsort(level.costs(odd), kind="stable")]
     for attempt in range(N_ATTEMPTS):
@@ -245,5 +263,8 @@ def _take_step(
         trial = level.snapshot()
         step = trial.remove(np.sort(cheapest_first[:n_odd]))
         if rules.are_kept_by(trial):
+            if recorder is not None:
+                slots = level.sight().slots
+                recorder.look(level, Collapses(slots[step.odd], slots[step.target]))
             return trial, step
     return None

@@ -1,61 +1,23 @@
 """The steps of an error-guided analysis as few symbols, and from those the steps again.
 
-Whoever has the finer level knows the forecast of every collapse, which costs no symbol. The record
-holds what the forecasts leave open, as answers to questions in an order that both sides work out:
-
-* of each level, how high the forecast of a vertex that goes may be, and what it is in the middle;
-* of each vertex whose forecast is lower than those of all neighbours still in question, whether it
-  goes. If it does, its neighbours stay, and are not asked about; if not, it is out of question;
-* of each vertex that goes, onto which of its legal targets, counted from the best forecast.
-
-An answer belongs to a class of questions, by what is forecast. Within one, answers are alike, so
-that a compressor makes little of them: some 1.8 bits a vertex of the first kind and 1 of the second
-where the steps by themselves have 4 and 2.3.
+What the questions are is told in `wavelet_core.partition.questions`. An analysis answers them at
+each of its steps; whoever has the answers takes the same steps again.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
-from .._kernels.forecast import forecast_collapses, match_targets
-from .._kernels.surface_choice import CANDIDATE, find_cheapest, take_cheapest
 from .._kernels.surface_points import FacePoints, hand_over
-from .._validate import FloatArray, frozen
+from .._validate import FloatArray
 from ..errors import PyramidError
 from ._mutable_level import CollapseStep, SurfaceLevel
-
-#: Classes of the questions whether a vertex goes, and onto which target.
-N_GOING_CLASSES = 32
-N_TARGET_CLASSES = 8
-#: The code of "no forecast"; those of forecasts are lower.
-NO_FORECAST = 0xFFFF
-#: Codes in a class: forecasts within a factor of two.
-CODES_IN_CLASS = 128
-#: The class of the forecasts in the middle of those that go, and the last one.
-MIDDLE_CLASS = 8
-LAST_CLASS = 14
-#: Codes that tell how much better the best target is than the next one.
-CODES_IN_DOUBT = 96
-#: Forecasts below the square of so many steps of rounding are nothing.
-NEGLIGIBLE_STEPS = 16.0
-
-
-class Answers(NamedTuple):
-    """What was answered, by class, in the order of the questions.
-
-    levels : (n_steps, 2) uint16, of each step the highest and the middle code of what goes
-    going : tuple of uint8 arrays, one a class, 0 or 1
-    targets : tuple of uint8 arrays, one a class
-    """
-
-    levels: NDArray[np.uint16]
-    going: tuple[NDArray[np.uint8], ...]
-    targets: tuple[NDArray[np.uint8], ...]
+from .questions import Answers, Collapses, Pen, Reader, Writer, ask
 
 
 class Start(NamedTuple):
@@ -88,16 +50,6 @@ class Manner(NamedTuple):
     height_step: float
 
 
-class _Pen(Protocol):
-    """Gives the answers: writes down those it is given, or reads them."""
-
-    def level(self, code: tuple[int, int] | None) -> tuple[int, int]: ...
-
-    def going(self, classes: NDArray, answers: NDArray | None) -> NDArray[np.bool_]: ...
-
-    def targets(self, classes: NDArray, answers: NDArray | None) -> NDArray[np.int32]: ...
-
-
 class RecordedLevel(SurfaceLevel):
     """A level that is collapsed as a record says, without points, errors or costs.
 
@@ -121,23 +73,7 @@ class RecordedLevel(SurfaceLevel):
         )
         self._vertices.integrals[:] = start.integrals
 
-    @property
-    def local_heights(self) -> FloatArray:
-        """Heights and weighted attributes of the level's vertices, from their local origin."""
-        return self._surface.z[self._vertices.lives]
-
-    @property
-    def integrals(self) -> FloatArray:
-        """Integrals of the level's scaling functions."""
-        return self._vertices.integrals[self._vertices.lives]
-
-    @property
-    def faces(self) -> NDArray[np.int32]:
-        """Faces of the level, in places among its vertices."""
-        position = np.cumsum(self._vertices.lives, dtype=np.int32) - np.int32(1)
-        return position[self._mesh.origin.reshape(-1, 3)[self._faces.lives]]
-
-    def take(self, pen: _Pen, truth: CollapseStep | None = None) -> CollapseStep:
+    def take(self, pen: Pen, truth: CollapseStep | None = None) -> CollapseStep:
         """Take the next step: the one that the pen is told, or that it tells.
 
         Raises
@@ -145,87 +81,21 @@ class RecordedLevel(SurfaceLevel):
         PyramidError
             The answers are those of no step that an analysis takes.
         """
-        vertices, slots = self._vertices, np.flatnonzero(self._vertices.lives).astype(np.int32)
-        best, second = self._forecasts(slots)
-        is_odd, target = None, None
-        told = None
+        sight = self.sight()
+        known = None
         if truth is not None:
-            is_odd = np.zeros(len(vertices.ids), dtype=bool)
-            target = np.full(len(vertices.ids), -1, dtype=np.int32)
-            odd = slots[truth.odd]
-            is_odd[odd], target[odd] = True, slots[truth.target]
-            codes = np.sort(best[odd])
-            told = int(codes[-1]), int(codes[len(codes) // 2])
-        highest, middle = pen.level(told)
-        vertices.cost[slots] = best[slots]
-        odd = self._ask_going(pen, slots[best[slots] <= highest], best, middle, is_odd)
-        if len(odd) == 0:
-            raise PyramidError("a step without odd vertices; the file is damaged.")
-        classes = _target_classes(best[odd], second[odd])
-        if target is None:
-            ranks = pen.targets(classes, None)
-            onto = self._match(odd, ranks, np.full(len(odd), -1, dtype=np.int32))[1]
-        else:
-            onto = target[odd]
-            ranks = self._match(odd, np.full(len(odd), -1, dtype=np.int32), onto.copy())[0]
-            pen.targets(classes, ranks)
-        if (onto < 0).any() or (ranks < 0).any():
-            raise PyramidError("a target that no ring has; the file is damaged.")
-        vertices.target[odd] = onto
-        n_vertices = self.n_vertices
-        step = self.remove(odd)
-        if n_vertices - self.n_vertices != len(odd):
+            known = Collapses(sight.slots[truth.odd], sight.slots[truth.target])
+        step = self.collapse(*ask(pen, sight, known))
+        if step is None:
             raise PyramidError("a collapse that no surface allows; the file is damaged.")
         return step
 
-    def _forecasts(self, slots: NDArray[np.int32]) -> tuple[NDArray, NDArray]:
-        """Return the codes of the best and of the next best target of every vertex."""
-        n = len(self._vertices.ids)
-        best, second = np.full(n, np.inf), np.full(n, np.inf)
-        run_in_ranges(
-            forecast_collapses, len(slots), slots, self._mesh, self._surface,
-            self._vertices.stays, self._vertices.locked, self._outline, self._height_step,
-            best, second,
-        )  # fmt: skip
-        negligible = (NEGLIGIBLE_STEPS * self._height_step) ** 2
-        return _coded(best, negligible), _coded(second, negligible)
-
-    def _ask_going(
-        self,
-        pen: _Pen,
-        active: NDArray[np.int32],
-        codes: NDArray[np.uint16],
-        middle: int,
-        is_odd: NDArray[np.bool_] | None,
-    ) -> NDArray[np.int32]:
-        """Ask in rounds which of the active vertices go; return those, ascending."""
-        cost, key = self._vertices.cost, self._vertices.key
-        state = np.zeros(len(cost), dtype=np.int8)
-        state[active] = CANDIDATE
-        taken = []
-        is_first = True
-        while len(active):
-            wins = np.empty(len(active), dtype=bool)
-            run_in_ranges(find_cheapest, len(active), active, self._mesh, state, cost, key, wins)
-            asked = active[wins]
-            classes = _going_classes(codes[asked], middle, is_first)
-            goes = pen.going(classes, None if is_odd is None else is_odd[asked])
-            state[asked[~goes]] = 0
-            wins[wins] = goes
-            run_in_ranges(take_cheapest, len(active), active, wins, self._mesh, state)
-            taken.append(asked[goes])
-            active = active[state[active] == CANDIDATE]
-            is_first = False
-        return np.sort(np.concatenate(taken)) if taken else np.empty(0, dtype=np.int32)
-
-    def _match(
-        self, odd: NDArray[np.int32], rank: NDArray[np.int32], target: NDArray[np.int32]
-    ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-        run_in_ranges(
-            match_targets, len(odd), odd, self._mesh, self._surface, self._vertices.stays,
-            self._vertices.locked, self._outline, self._height_step, rank, target,
-        )  # fmt: skip
-        return rank, target
+    def collapse(self, odd: NDArray[np.int32], target: NDArray[np.int32]) -> CollapseStep | None:
+        """Collapse vertices onto others, slots both; None if the link condition forbids one."""
+        self._vertices.target[odd] = target
+        n_vertices = self.n_vertices
+        step = self.remove(odd)
+        return step if n_vertices - self.n_vertices == len(odd) else None
 
     def _hand_over(
         self,
@@ -257,81 +127,6 @@ class RecordedLevel(SurfaceLevel):
         """Sum nothing: there are no points."""
 
 
-class Writer:
-    """A pen that keeps the answers it is told."""
-
-    def __init__(self) -> None:
-        self._levels: list[tuple[int, int]] = []
-        self._going: list[list[NDArray]] = [[] for _ in range(N_GOING_CLASSES)]
-        self._targets: list[list[NDArray]] = [[] for _ in range(N_TARGET_CLASSES)]
-
-    def level(self, code: tuple[int, int] | None) -> tuple[int, int]:
-        """Keep the codes of a level."""
-        assert code is not None
-        self._levels.append(code)
-        return code
-
-    def going(self, classes: NDArray, answers: NDArray | None) -> NDArray[np.bool_]:
-        """Keep which vertices go."""
-        assert answers is not None
-        _sort_into(self._going, classes, answers.astype(np.uint8))
-        return answers
-
-    def targets(self, classes: NDArray, answers: NDArray | None) -> NDArray[np.int32]:
-        """Keep the places of targets."""
-        assert answers is not None
-        _sort_into(self._targets, classes, answers.astype(np.uint8))
-        return answers
-
-    def answers(self) -> Answers:
-        """Return all that was kept."""
-        return Answers(
-            np.array(self._levels, dtype=np.uint16).reshape(-1, 2),
-            tuple(_joined(parts) for parts in self._going),
-            tuple(_joined(parts) for parts in self._targets),
-        )
-
-
-class Reader:
-    """A pen that reads answers, in the order in which they were written.
-
-    Parameters
-    ----------
-    answers : Answers
-        Of any origin.
-    """
-
-    def __init__(self, answers: Answers) -> None:
-        self._answers = answers
-        self._level = 0
-        self._going = [0] * N_GOING_CLASSES
-        self._targets = [0] * N_TARGET_CLASSES
-
-    def level(self, code: tuple[int, int] | None) -> tuple[int, int]:
-        """Return the codes of the next level."""
-        highest, middle = self._answers.levels[self._level]
-        self._level += 1
-        return min(int(highest), NO_FORECAST - 1), int(middle)
-
-    def going(self, classes: NDArray, answers: NDArray | None) -> NDArray[np.bool_]:
-        """Return which vertices go."""
-        return _taken_from(self._answers.going, self._going, classes) != 0
-
-    def targets(self, classes: NDArray, answers: NDArray | None) -> NDArray[np.int32]:
-        """Return the places of targets."""
-        return _taken_from(self._answers.targets, self._targets, classes).astype(np.int32)
-
-    def finish(self) -> None:
-        """Raise :class:`PyramidError` unless every answer has been read."""
-        for stored, used in zip(
-            (*self._answers.going, *self._answers.targets),
-            (*self._going, *self._targets),
-            strict=True,
-        ):
-            if len(stored) != used:
-                raise PyramidError("answers to no question; the file is damaged.")
-
-
 def record(
     level: RecordedLevel, steps: Sequence[CollapseStep], weights: FloatArray
 ) -> Answers | None:
@@ -347,18 +142,22 @@ def record(
         What the level's heights are in, by those.
     """
     writer = Writer()
-    for step in steps:
-        if len(step.odd) == 0 or not (np.diff(step.odd) > 0).all():
-            return None
-        try:
-            taken = level.take(writer, step)
-        except PyramidError:
-            return None
-        taken = taken._replace(details=taken.details / weights)
-        pairs: Iterable[tuple[Any, Any]] = zip(taken, step, strict=True)
-        if not all(np.array_equal(one, other) for one, other in pairs):
-            return None
-    return writer.answers()
+    if all(takes(level, writer, step, weights) for step in steps):
+        return writer.answers()
+    return None
+
+
+def takes(level: RecordedLevel, writer: Writer, step: CollapseStep, weights: FloatArray) -> bool:
+    """Take one step of an analysis, and tell whether it came out to the bit; see `record`."""
+    if len(step.odd) == 0 or not (np.diff(step.odd) > 0).all():
+        return False
+    try:
+        taken = level.take(writer, step)
+    except PyramidError:
+        return False
+    taken = taken._replace(details=taken.details / weights)
+    pairs: Iterable[tuple[Any, Any]] = zip(taken, step, strict=True)
+    return all(np.array_equal(one, other) for one, other in pairs)
 
 
 def replay(level: RecordedLevel, answers: Answers) -> list[CollapseStep]:
@@ -373,55 +172,3 @@ def replay(level: RecordedLevel, answers: Answers) -> list[CollapseStep]:
     steps = [level.take(reader) for _ in range(len(answers.levels))]
     reader.finish()
     return steps
-
-
-def _coded(squared: FloatArray, negligible: float) -> NDArray[np.uint16]:
-    """Return the upper half of each number in single precision, which keeps the order."""
-    with np.errstate(over="ignore"):
-        single = np.where(squared <= negligible, 0.0, squared).astype(np.float32)
-    code = (single.view(np.uint32) >> np.uint32(16)).astype(np.uint16)
-    code[~np.isfinite(single)] = NO_FORECAST
-    return code
-
-
-def _going_classes(codes: NDArray[np.uint16], middle: int, is_first: bool) -> NDArray[np.int64]:
-    octave = (codes.astype(np.int64) - middle) // CODES_IN_CLASS + MIDDLE_CLASS
-    octave = np.clip(octave, 0, LAST_CLASS)
-    octave[codes == 0] = LAST_CLASS + 1
-    return 2 * octave + (not is_first)
-
-
-def _target_classes(best: NDArray[np.uint16], second: NDArray[np.uint16]) -> NDArray[np.int64]:
-    lead = (second.astype(np.int64) - best) // CODES_IN_DOUBT
-    classes = np.clip(lead, 0, N_TARGET_CLASSES - 3)
-    classes[best == 0] = N_TARGET_CLASSES - 2
-    classes[second == NO_FORECAST] = N_TARGET_CLASSES - 1
-    return classes
-
-
-def _sort_into(kept: list[list[NDArray]], classes: NDArray, answers: NDArray) -> None:
-    order = np.argsort(classes, kind="stable")
-    ends = np.cumsum(np.bincount(classes, minlength=len(kept)))
-    for parts, answers_of_class in zip(kept, np.split(answers[order], ends[:-1]), strict=True):
-        if len(answers_of_class):
-            parts.append(answers_of_class)
-
-
-def _joined(parts: list[NDArray]) -> NDArray[np.uint8]:
-    return frozen(np.concatenate(parts)) if parts else frozen(np.empty(0, dtype=np.uint8))
-
-
-def _taken_from(
-    stored: tuple[NDArray[np.uint8], ...], used: list[int], classes: NDArray
-) -> NDArray[np.uint8]:
-    counts = np.bincount(classes, minlength=len(stored))
-    parts = []
-    for k, (answers, count) in enumerate(zip(stored, counts.tolist(), strict=True)):
-        if used[k] + count > len(answers):
-            raise PyramidError("questions without an answer; the file is damaged.")
-        parts.append(answers[used[k] : used[k] + count])
-        used[k] += count
-    order = np.argsort(classes, kind="stable")
-    answers = np.empty(len(classes), dtype=np.uint8)
-    answers[order] = np.concatenate(parts)
-    return answers

@@ -13,8 +13,8 @@ from .._kernels.refine_tin import Aim
 from .._validate import FloatArray, IntArray
 from ..accuracy.fitted_heights import fitted
 from ..errors import MeshError, OptionError
-from ..lifting.analyse import height_weights
 from ..lifting.options import checked_weights
+from ..lifting.signal import height_weights
 from ..mesh.location import Cover, cover_of, surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
 from ..partition.registry import NORMS

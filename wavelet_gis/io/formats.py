@@ -87,6 +87,14 @@ MESH_FORMATS = (
         "QGIS (as a mesh layer), hydraulic models",
         has_prj=True,
     ),
+    MeshFormat(
+        ".nc",
+        "UGRID",
+        "wavelet_gis.io.ugrid:write_ugrid",
+        "QGIS (as a mesh layer), D-Flow FM, xugrid",
+        keeps_attributes=True,
+        takes_crs=True,
+    ),
     MeshFormat(".stl", "STL", "wavelet_gis.io.cad:write_stl", "3D printers", has_local_origin=True),
     MeshFormat(
         ".glb",

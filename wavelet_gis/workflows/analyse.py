@@ -184,6 +184,7 @@ def analyse(
         clock.stage("analyse")
         pyramid = core_analyse(
             terrain.mesh,
+            record=True,
             progress=part_of(progress, 0.0, 0.7 if measure else 0.9),
             **working_rules(  # type: ignore[arg-type]
                 terrain.frame,

@@ -76,6 +76,13 @@ def test_pyramids_are_the_same_bytes(mesh_name, design):
     assert bytes_of(ours) == bytes_of(theirs)
 
 
+def test_where_two_fans_meet_at_a_target_both_engines_look_at_the_same_one():
+    """The loops went on to the other fan once a face of it had gone, and kept a vertex back."""
+    mesh = grid_with_holes(20, 24)
+    ours, theirs = both(lambda: analyse(mesh, levels=6))
+    assert bytes_of(ours) == bytes_of(theirs)
+
+
 @pytest.mark.parametrize("mesh_name", MESHES)
 def test_locked_vertices_are_the_same_bytes(mesh_name):
     mesh = MESHES[mesh_name]()

@@ -1,5 +1,7 @@
 """A record tells its pyramid to the bit, on every engine and for any number of threads."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from helpers_meshes import grid_with_holes, random_delaunay
@@ -7,8 +9,9 @@ from helpers_meshes import grid_with_holes, random_delaunay
 from wavelet_core import TriangleMesh, analyse, synthetic
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.errors import PyramidError
+from wavelet_core.lifting import recorded
 from wavelet_core.lifting.recorded import pyramid_of, record_of
-from wavelet_core.partition.recorded import Answers
+from wavelet_core.partition.questions import Answers
 
 ENGINES = ["arrays", *(["compiled"] if HAS_NUMBA else [])]
 
@@ -48,6 +51,15 @@ OPTIONS = {
 }
 
 
+def are_alike(one, other):
+    """Whether two records hold the same numbers."""
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(are_alike, one, other))
+    if isinstance(one, np.ndarray):
+        return one.dtype == other.dtype and one.tobytes() == other.tobytes()
+    return one == other
+
+
 @pytest.mark.parametrize("options", list(OPTIONS))
 @pytest.mark.parametrize("name", list(MESHES))
 def test_every_pyramid_of_the_default_design_is_told(name, options):
@@ -55,6 +67,44 @@ def test_every_pyramid_of_the_default_design_is_told(name, options):
     pyramid = analyse(mesh, **OPTIONS[options])
     if pyramid.n_levels:
         assert told(pyramid, mesh)[1] == pyramid
+
+
+@pytest.mark.parametrize("parts", ["one part", "parts"])
+@pytest.mark.parametrize("options", list(OPTIONS))
+@pytest.mark.parametrize("name", list(MESHES))
+def test_an_analysis_takes_the_record_that_a_second_walk_does(name, options, parts, monkeypatch):
+    if parts == "parts":
+        monkeypatch.setattr(recorded, "LEAST_IN_PARTS", 100)
+        monkeypatch.setattr(recorded, "LEAST_IN_PART", 40)
+        monkeypatch.setattr(recorded, "PART_SHARE", 0.6)
+    mesh = MESHES[name]
+    pyramid = analyse(mesh, record=True, **OPTIONS[options])
+    assert pyramid == analyse(mesh, **OPTIONS[options])
+    if pyramid.n_levels and (name, options) != ("holes", "outline"):
+        assert are_alike(pyramid.told.record, record_of(pyramid.with_parts(), mesh))
+        assert record_of(pyramid, mesh) is pyramid.told.record
+
+
+def test_a_record_of_the_analysis_is_not_taken_for_another_pyramid_or_input():
+    mesh = synthetic.hills(12, 12)
+    pyramid = analyse(mesh, levels=4, record=True)
+    changed = replace(pyramid, coarse=pyramid.coarse + 1.0)
+    assert changed.told is pyramid.told
+    assert record_of(changed, mesh) is None
+    assert record_of(replace(pyramid, steps=pyramid.steps[1:]), mesh) is None
+    raised = TriangleMesh(mesh.vertices + np.array([0.0, 0.0, 1.0]), mesh.faces)
+    assert record_of(pyramid, raised) is None
+    assert pyramid.with_gains({1: 0.5}).told is None
+    assert analyse(mesh, levels=2, prediction="GLMN", record=True).told is None
+    assert analyse(mesh, levels=0, record=True).told is None
+
+
+def test_collapses_that_the_link_condition_forbids_leave_the_record_to_the_writer():
+    """Only around holes, and there only with a tolerance, is one forbidden by its own step's."""
+    mesh, options = MESHES["holes"], OPTIONS["outline"]
+    pyramid = analyse(mesh, record=True, **options)
+    assert pyramid.told is None
+    assert told(pyramid, mesh)[1] == pyramid
 
 
 def test_locked_vertices_and_stars_where_all_are():

@@ -7,7 +7,8 @@ among themselves, within each pass or over all of them, so that small ones come 
 last: what a compressor then sees changes but slowly.
 
 Numbers are integers throughout: those of integer rasters; floats times a divisor that makes
-integers of all of them (hundreds of centimetres); other floats by the order of their bits.
+integers of all of them (hundreds of centimetres); places in a palette where few values differ;
+other floats by the order of their bits.
 """
 
 from __future__ import annotations
@@ -37,6 +38,10 @@ DIVISORS = (1, 2, 4, 8, 10, 16, 20, 32, 64, 100, 128, 256, 512, 1000, 1024, 10_0
 #: A divisor is no find where it hardly has fewer digits than the floats themselves.
 _LEAST_SPACINGS = 4.0
 
+#: Floats that are no multiples have a palette if no more than this share of them differ: means of
+#: a few decimals, which repeat.
+MOST_IN_PALETTE = 1 / 16
+
 #: Weights of the near neighbours and of those beyond them, where all are known: what a cubic takes.
 _NEAR, _FAR = 10.0, -1.0
 
@@ -63,12 +68,14 @@ class Numbers(NamedTuple):
     """Numbers as integers.
 
     integers : (n,) int64
-    divisor : int, of which they are the multiples; 0 for floats by the order of their bits, and
-        for integers
+    divisor : int, of which they are the multiples; 0 for all others
+    palette : array of the values' type, or None; the different values in the order of their bits,
+        of which the integers are the places
     """
 
     integers: NDArray[np.int64]
     divisor: int
+    palette: NDArray[Any] | None = None
 
 
 class _Pass(NamedTuple):
@@ -93,12 +100,30 @@ def integers_of(values: NDArray[Any]) -> Numbers:
         integers = np.rint(values.astype(np.float64) * divisor).astype(np.int64)
         if values_of(integers, dtype, divisor).tobytes() == values.tobytes():
             return Numbers(integers, divisor)
-    bits = values.view(f"<i{dtype.itemsize}").astype(np.int64)
-    return Numbers(_mirrored(bits, dtype.itemsize), 0)
+    bits = _mirrored(values.view(f"<i{dtype.itemsize}").astype(np.int64), dtype.itemsize)
+    different = np.unique(bits)
+    if len(different) > MOST_IN_PALETTE * len(bits):
+        return Numbers(bits, 0)
+    return Numbers(np.searchsorted(different, bits), 0, values_of(different, dtype, 0))
 
 
-def values_of(integers: NDArray[np.int64], dtype: np.dtype[Any], divisor: int) -> NDArray[Any]:
-    """Return the values that integers stand for; the way back of `integers_of`."""
+def values_of(
+    integers: NDArray[np.int64],
+    dtype: np.dtype[Any],
+    divisor: int,
+    palette: NDArray[Any] | None = None,
+) -> NDArray[Any]:
+    """Return the values that integers stand for; the way back of `integers_of`.
+
+    Raises
+    ------
+    PyramidError
+        Places that the palette does not have.
+    """
+    if palette is not None:
+        if len(integers) and not 0 <= integers.min() <= integers.max() < len(palette):
+            raise PyramidError("numbers beyond the palette of the raster; the file is damaged.")
+        return palette[integers]
     if dtype.kind != "f":
         return integers.astype(dtype)
     if divisor:

@@ -39,12 +39,13 @@ __all__ = [
     "write_level_rows",
 ]
 
-#: Raised by one when a reader of the version before could not read the file.
-FORMAT_VERSION = 2
+#: Raised by one when a reader of the version before could not read the file. A file that such a
+#: reader can read says so: it has the version before.
+FORMAT_VERSION = 3
 
 #: The versions that are read. In the first, no pyramid was told by a record, and what rounding
-#: loses was stored in the place of the input's numbers.
-FORMATS_READ = (1, 2)
+#: loses was stored in the place of the input's numbers; in the second, no raster had a palette.
+FORMATS_READ = (1, 2, 3)
 
 FORMAT_NAME = "terrain-wavelets pyramid"
 
@@ -262,7 +263,7 @@ def _require_format(metadata: Fields) -> bool:
     if type(described["version"]) is not int or described["version"] not in FORMATS_READ:
         raise InputFileError(
             f"the file has format version {str(described['version'])[:20]}, this program reads "
-            f"{' and '.join(map(str, FORMATS_READ))}; update terrain-wavelets."
+            f"{', '.join(map(str, FORMATS_READ))}; update terrain-wavelets."
         )
     described.text("software", 200)
     if described.get("checksums", CHECKSUMS) != CHECKSUMS:

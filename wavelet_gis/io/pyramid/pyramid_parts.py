@@ -17,11 +17,13 @@ from numpy.typing import NDArray
 import wavelet_core
 from wavelet_core import Progress, Pyramid, PyramidError, Step, TriangleMesh
 from wavelet_core.lifting.pyramid import PyramidPart
+from wavelet_core.lifting.recorded import is_error_guided, pyramid_of, record_of
 from wavelet_core.lifting.recorded import part_of as part_of_record
-from wavelet_core.lifting.recorded import pyramid_of, record_of
 from wavelet_core.lifting.signal import SIGNALS
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.metrics import LevelErrors
+from wavelet_core.partition._mutable_level import CollapseStep
+from wavelet_core.partition.plan_record import places_of_steps, steps_at_places
 from wavelet_core.partition.stopping import REASONS, StopRecord
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
@@ -40,7 +42,12 @@ from wavelet_gis.io.pyramid.record_parts import (
     record_from_parts,
     record_to_parts,
 )
-from wavelet_gis.io.pyramid.source_parts import check_source, shrink_source, source_arrays
+from wavelet_gis.io.pyramid.source_parts import (
+    PALETTE,
+    check_source,
+    shrink_source,
+    source_arrays,
+)
 from wavelet_gis.model.dem import cell_plan
 from wavelet_gis.model.exact_restore import CORRECTIONS
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -65,6 +72,12 @@ _STEP_ARRAYS = {
     "details": ("<f8", 2),
 }
 
+#: What the metadata say of x and y that are those of a raster's cells.
+_CELLS = "cells"
+
+#: What the metadata say of steps whose filters follow from their collapses.
+_PLACES = "places"
+
 _NO_INPUT = "the pyramid is told by an input that the file does not hold."
 
 
@@ -74,12 +87,16 @@ def pyramid_to_parts(
     """Return the metadata and the arrays of a pyramid file, by name."""
     pyramid = geo.pyramid
     source, arrays = geo.origin.to_parts()
+    has_cells = False
     shrink_source(geo, source, arrays)
     mesh = geo.origin.kept_mesh(geo.frame, pyramid.faces)
     record = None if mesh is None else record_of(pyramid, mesh, progress)
     if record is None:
         told = None
-        arrays.update(listed_arrays(pyramid))
+        arrays.update(placed_arrays(pyramid) or listed_arrays(pyramid))
+        has_cells = _is_plan_of_cells(pyramid, geo.origin, geo.frame)
+        if has_cells:
+            del arrays["horizontal"]
     else:
         told, record_arrays = record_to_parts(record)
         arrays.update(record_arrays)
@@ -89,10 +106,12 @@ def pyramid_to_parts(
             arrays.update(face_arrays)
     if pyramid.locked is not None:
         arrays["locked"] = pyramid.locked
+    is_placed = _name_of(0, "places") in arrays
+    is_new = is_placed or has_cells or PALETTE in source
     metadata: dict[str, Any] = {
         "format": {
             "name": FORMAT_NAME,
-            "version": FORMAT_VERSION,
+            "version": FORMAT_VERSION if is_new else FORMAT_VERSION - 1,
             "checksums": CHECKSUMS,
             "software": f"terrain-wavelets {wavelet_core.__version__}",
         },
@@ -115,6 +134,10 @@ def pyramid_to_parts(
         "source_name": os.path.basename(geo.source_name),
         "history": list(geo.history),
     }
+    if is_placed:
+        metadata["pyramid"]["steps"] = _PLACES
+    if has_cells:
+        metadata["pyramid"]["plan"] = _CELLS
     if told is not None:
         metadata["record"] = told
     if geo.notes:
@@ -134,7 +157,7 @@ def pyramid_from_parts(
     if "record" in metadata:
         pyramid = _recorded(contents, arrays, origin, frame, written)
     else:
-        pyramid = _from_lists(contents, arrays)
+        pyramid = _from_lists(contents, arrays, origin, frame)
     n_vertices = pyramid.n_vertices(pyramid.n_levels)
     if origin.n_vertices not in (None, n_vertices):
         raise PyramidError(
@@ -180,7 +203,7 @@ def levels_from_parts(contents: Contents, arrays: StoredArrays, level: int) -> G
 def _part_with(contents: Contents, level: int) -> int:
     """Return the last part of a file's record that holds a level; 0 for all of the file."""
     metadata = contents.metadata
-    if "record" not in metadata or "divisor" not in metadata.fields("source") or level < 0:
+    if "record" not in metadata or level < 0:
         return 0
     record = metadata.fields("record")
     begins = metadata.fields("pyramid").integer("n_levels")
@@ -193,19 +216,22 @@ def _part_with(contents: Contents, level: int) -> int:
 
 
 def _part_from_parts(contents: Contents, arrays: StoredArrays, index: int) -> GeoPyramid:
-    """Return the levels of a raster's pyramid from one of its parts down."""
+    """Return the levels of a pyramid from one of its parts down.
+
+    A raster's numbers are not needed, a cloud's are, for the places of the vertices.
+    """
     metadata = contents.metadata
-    described, fields = metadata.fields("pyramid"), Fields(metadata.fields("source"), "the raster")
-    fields.pop(CORRECTIONS, None)
+    described, fields = metadata.fields("pyramid"), Fields(metadata.fields("source"), "the source")
+    if "divisor" in fields:
+        fields.pop(CORRECTIONS, None)
     origin = origin_from_parts(fields, source_arrays(fields, arrays, with_numbers=False))
     frame = LocalFrame.from_dict(metadata.fields("frame"))
     design = _design_from(described, len(described.texts("channels")))
     record = record_from_parts(metadata.fields("record"), arrays, len(design["channels"]), index)
     ids = record.parts[index].ids
-    grid = origin.grid
-    if ids is None or grid is None or ids[-1] >= (origin.n_vertices or 0):
-        raise PyramidError(f"part {index} has vertices that the raster has not.")
-    plan = cell_plan(grid.geometry, grid.valid, frame, ids)
+    if ids is None or ids[-1] >= (origin.n_vertices or 0):
+        raise PyramidError(f"part {index} has vertices that the input has not.")
+    plan = _plan_of(origin, frame, ids)
     locked = _locked_from(described, arrays)
     if locked is not None and len(locked) != origin.n_vertices:
         raise PyramidError("a locked mask of another length; the file is damaged.")
@@ -214,6 +240,16 @@ def _part_from_parts(contents: Contents, arrays: StoredArrays, index: int) -> Ge
             record, index, plan, locked=None if locked is None else locked[ids], **design
         )
     return _geo_pyramid(contents, pyramid, origin, frame)
+
+
+def _plan_of(origin: Origin, frame: LocalFrame, ids: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return x and y of some vertices of the input, in the working frame."""
+    if origin.grid is not None:
+        return cell_plan(origin.grid.geometry, origin.grid.valid, frame, ids)
+    mesh = origin.kept_mesh(frame, np.empty((0, 3), dtype=np.int32))
+    if mesh is None:
+        raise PyramidError(_NO_INPUT)
+    return mesh.vertices[ids, :2]
 
 
 def listed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]]:
@@ -225,8 +261,58 @@ def listed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]]:
         arrays["integrals"] = pyramid.part.integrals
     for level, step in enumerate(pyramid.steps):
         for name in _STEP_ARRAYS:
-            arrays[f"steps/{level:04d}/{name}"] = getattr(step, name)
+            arrays[_name_of(level, name)] = getattr(step, name)
     return arrays
+
+
+def placed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]] | None:
+    """Return the arrays of a pyramid whose filters follow from its collapses; None for others."""
+    if not is_error_guided(pyramid) or pyramid.horizontal is None or pyramid.n_levels == 0:
+        return None
+    places = places_of_steps(
+        pyramid.horizontal,
+        pyramid.faces,
+        _mask(pyramid.locked, len(pyramid.horizontal)),
+        float(pyramid.parameters["outline_tolerance"]),
+        [
+            CollapseStep(*(getattr(step, name) for name in _STEP_ARRAYS))
+            for step in reversed(pyramid.steps)
+        ],
+    )
+    if places is None:
+        return None
+    arrays: dict[str, NDArray[Any]] = {
+        "faces": pyramid.faces,
+        "coarse": pyramid.coarse,
+        "horizontal": pyramid.horizontal,
+    }
+    for level, (step, of_step) in enumerate(zip(pyramid.steps, reversed(places), strict=True)):
+        arrays[_name_of(level, "odd")] = step.odd
+        arrays[_name_of(level, "places")] = of_step
+        arrays[_name_of(level, "details")] = step.details
+    return arrays
+
+
+def _is_plan_of_cells(pyramid: Pyramid, origin: Origin, frame: LocalFrame) -> bool:
+    if origin.grid is None or pyramid.horizontal is None:
+        return False
+    return np.array_equal(pyramid.horizontal, _plan_of_cells(origin, frame))
+
+
+def _plan_of_cells(origin: Origin, frame: LocalFrame) -> NDArray[np.float64]:
+    """Return x and y of all cells with data of a raster, in the working frame."""
+    if origin.grid is None:
+        raise PyramidError("places of cells without a raster; the file is damaged.")
+    ids = np.arange(np.count_nonzero(origin.grid.valid))
+    return cell_plan(origin.grid.geometry, origin.grid.valid, frame, ids)
+
+
+def _name_of(level: int, array: str) -> str:
+    return f"steps/{level:04d}/{array}"
+
+
+def _mask(locked: NDArray[np.bool_] | None, n_vertices: int) -> NDArray[np.bool_]:
+    return np.zeros(n_vertices, dtype=bool) if locked is None else locked
 
 
 def _geo_pyramid(
@@ -253,32 +339,44 @@ def _are_measured(levels: tuple[LevelErrors, ...]) -> bool:
     return all(math.isfinite(value) for level in levels for value in level)
 
 
-def _from_lists(contents: Contents, arrays: StoredArrays) -> Pyramid:
+def _from_lists(
+    contents: Contents, arrays: StoredArrays, origin: Origin, frame: LocalFrame
+) -> Pyramid:
     """Return a pyramid from the arrays of its steps."""
     described = contents.metadata.fields("pyramid")
     n_levels = described.integer("n_levels", 0, MAX_LEVELS)
-    steps = [
-        Step(
-            **{
-                name: arrays.get(f"steps/{k:04d}/{name}", *kind)
-                for name, kind in _STEP_ARRAYS.items()
-            }
-        )
-        for k in range(n_levels)
-    ]
     signal = described.choice("signal", tuple(SIGNALS))
     coarse = arrays.get("coarse", "<f8", 2)
     if not len(coarse):
         raise PyramidError("the coarsest level has no vertices; the file is damaged.")
+    faces, locked = arrays.get("faces", "<i4", 2), _locked_from(described, arrays)
+    horizontal = None
+    if SIGNALS[signal].keeps_plan and described.get("plan") == _CELLS:
+        horizontal = _plan_of_cells(origin, frame)
+    elif SIGNALS[signal].keeps_plan:
+        horizontal = arrays.get("horizontal", "<f8", 2)
+    if described.get("steps") == _PLACES and horizontal is not None:
+        tolerance = described.fields("parameters").number("outline_tolerance")
+        steps = _placed_steps(arrays, n_levels, horizontal, faces, locked, tolerance)
+    else:
+        steps = [
+            Step(
+                **{
+                    name: arrays.get(_name_of(level, name), *kind)
+                    for name, kind in _STEP_ARRAYS.items()
+                }
+            )
+            for level in range(n_levels)
+        ]
     pyramid = Pyramid.from_parts(
-        faces=arrays.get("faces", "<i4", 2),
-        horizontal=arrays.get("horizontal", "<f8", 2) if SIGNALS[signal].keeps_plan else None,
+        faces=faces,
+        horizontal=horizontal,
         coarse=coarse,
         steps=steps,
         channels=described.texts("channels"),
         signal=signal,
         update=described.text("update"),
-        locked=_locked_from(described, arrays),
+        locked=locked,
         parameters=dict(described.fields("parameters")),
         stop=_stop_from(described),
     )
@@ -291,6 +389,43 @@ def _from_lists(contents: Contents, arrays: StoredArrays) -> Pyramid:
         ids = np.arange(n_vertices, dtype=np.int32)
         pyramid = replace(pyramid, part=PyramidPart(ids, integrals))
     return pyramid
+
+
+def _placed_steps(
+    arrays: StoredArrays,
+    n_levels: int,
+    horizontal: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    locked: NDArray[np.bool_] | None,
+    tolerance: float,
+) -> list[Step]:
+    """Return the steps of which odd vertices, places of targets and details are stored."""
+    is_sound = (
+        horizontal.shape[1:] == (2,)
+        and faces.shape[1:] == (3,)
+        and len(horizontal) > 0
+        and bool(np.isfinite(horizontal).all())
+        and (faces.size == 0 or bool(faces.min() >= 0 and faces.max() < len(horizontal)))
+        and (locked is None or locked.shape == (len(horizontal),))
+        and tolerance >= 0
+    )
+    if not is_sound:
+        raise PyramidError("a finest level that is no surface; the file is damaged.")
+    _require_surface(TriangleMesh(np.insert(horizontal, 2, 0.0, axis=1), faces))
+    told = [
+        (
+            arrays.get(_name_of(level, "odd"), "<i4", 1),
+            arrays.get(_name_of(level, "places"), "|u1", 1),
+        )
+        for level in range(n_levels)
+    ]
+    mask = _mask(locked, len(horizontal))
+    with np.errstate(all="ignore"):
+        collapses = list(steps_at_places(horizontal, faces, mask, tolerance, told[::-1]))
+    return [
+        Step(*collapse._replace(details=arrays.get(_name_of(level, "details"), "<f8", 2)))
+        for level, collapse in enumerate(reversed(collapses))
+    ]
 
 
 def _recorded(

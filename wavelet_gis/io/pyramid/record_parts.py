@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from wavelet_core.errors import PyramidError
 from wavelet_core.lifting.recorded import Frame, Record, RecordPart
 from wavelet_core.mesh.connectivity import build_connectivity
-from wavelet_core.partition.recorded import (
+from wavelet_core.partition.questions import (
     N_GOING_CLASSES,
     N_TARGET_CLASSES,
     NO_FORECAST,

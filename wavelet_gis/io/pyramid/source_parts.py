@@ -20,15 +20,19 @@ from wavelet_gis.io.pyramid.grid_codec import (
 from wavelet_gis.model.exact_restore import CORRECTIONS, number_dtype
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
-__all__ = ["check_source", "shrink_source", "source_arrays"]
+__all__ = ["PALETTE", "check_source", "shrink_source", "source_arrays"]
 
-#: A raster's numbers, in memory and in the file.
+#: What the description of a raster says of its palette: how many values there are.
+PALETTE = "palette"
+
 #: A raster's numbers, in memory and in the file.
 _GRID_VALUES = f"source/{CORRECTIONS}/values"
 
 _RESIDUALS = "source/residuals"
 
 _BEYOND = "source/beyond"
+
+_PALETTE = "source/palette"
 
 
 def shrink_source(geo: GeoPyramid, source: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
@@ -40,6 +44,9 @@ def shrink_source(geo: GeoPyramid, source: dict[str, Any], arrays: dict[str, NDA
         arrays[_RESIDUALS], arrays[_BEYOND] = residuals.numbers, residuals.beyond
         source["divisor"] = numbers.divisor
         source["relief_classes"] = list(residuals.classes)
+        if numbers.palette is not None:
+            arrays[_PALETTE] = numbers.palette
+            source[PALETTE] = len(numbers.palette)
 
 
 def source_arrays(
@@ -63,8 +70,9 @@ def source_arrays(
         integers = decode_grid(residuals, valid.astype(bool))
         divisor = source.integer("divisor", 0, max(DIVISORS))
         dtype = number_dtype(source.text("dtype"))
+        palette = arrays.get(_PALETTE, dtype.str, 1) if PALETTE in source else None
         with np.errstate(over="ignore"):
-            found[_GRID_VALUES] = values_of(integers, dtype, divisor)
+            found[_GRID_VALUES] = values_of(integers, dtype, divisor, palette)
     return found
 
 

@@ -1,8 +1,11 @@
 """Faces come back from what their points do not tell of them."""
 
+import hashlib
+
 import numpy as np
 import pytest
 
+from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
 from wavelet_gis.io.pyramid.face_codec import decode_faces, encode_faces
@@ -79,3 +82,42 @@ def test_records_of_other_points_are_refused():
     ):
         with pytest.raises(PyramidError):
             decode_faces(points, broken)
+
+
+ENGINES = ["arrays", "loops", *(["compiled"] if HAS_NUMBA else [])]
+
+
+def digest_of(record):
+    digest = hashlib.sha256()
+    for array in (*record.answers, record.far, record.holes):
+        digest.update(array.tobytes())
+    return digest.hexdigest()[:16]
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize(
+    ("seed", "side", "every", "expected"),
+    [(1, 10_000, 3, "662f44d4fd2adf11"), (2, 2**24, 1, "9a59f152f889a04e")],
+)
+def test_records_are_those_of_the_first_files_of_format_2(name, seed, side, every, expected):
+    """The numbers are those of the code before there were kernels."""
+    points = scattered(seed=seed, side=side)
+    faces = faces_of(points)[::every]
+    with engine(name):
+        record = encode_faces(points, faces)
+        assert digest_of(record) == expected
+        assert np.array_equal(decode_faces(points, record), faces)
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_a_point_that_is_joined_to_hundreds(name):
+    """More spokes than are sorted by insertion, and triangles of one lowest corner."""
+    angle = np.linspace(0, 2 * np.pi, 300, endpoint=False)
+    rim = np.rint(1e6 * np.column_stack([np.cos(angle), np.sin(angle)])).astype(np.int64)
+    points = np.vstack([[0, 0], rim])
+    around = np.arange(300)
+    faces = np.column_stack([np.zeros(300, int), 1 + around, 1 + (around + 1) % 300])
+    faces = faces[np.argsort(faces[:, 1])]
+    with engine(name):
+        record = encode_faces(points, faces)
+        assert np.array_equal(decode_faces(points, record), faces)

@@ -27,7 +27,8 @@ def test_every_bit_of_every_type_comes_back(dtype, data):
     valid = data.draw(hnp.arrays(bool, shape))
     numbers = integers_of(values[valid])
     residuals = encode_grid(numbers.integers, valid)
-    back = values_of(decode_grid(residuals, valid), np.dtype(dtype), numbers.divisor)
+    integers = decode_grid(residuals, valid)
+    back = values_of(integers, np.dtype(dtype), numbers.divisor, numbers.palette)
     assert back.tobytes() == values[valid].tobytes()
 
 
@@ -46,6 +47,22 @@ def test_floats_that_are_decimals_are_found(values, divisor):
     numbers = integers_of(values)
     assert numbers.divisor == divisor
     assert values_of(numbers.integers, values.dtype, divisor).tobytes() == values.tobytes()
+
+
+def test_floats_of_which_few_differ_have_a_palette():
+    rng = np.random.default_rng(3)
+    thirds = rng.integers(-60, 60, 4000) / 3.0
+    thirds[:2] = -0.0, 0.0
+    numbers = integers_of(thirds)
+    assert numbers.palette is not None
+    assert len(numbers.palette) < 130
+    assert numbers.integers.max() < 130
+    back = values_of(numbers.integers, thirds.dtype, 0, numbers.palette)
+    assert back.tobytes() == thirds.tobytes()
+    for beyond in (-1, len(numbers.palette)):
+        with pytest.raises(PyramidError, match="beyond the palette"):
+            values_of(np.array([beyond]), thirds.dtype, 0, numbers.palette)
+    assert integers_of(rng.normal(size=4000)).palette is None
 
 
 def test_smooth_terrain_has_small_residuals():

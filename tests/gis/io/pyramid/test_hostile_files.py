@@ -96,7 +96,7 @@ def test_a_view_that_poses_as_a_table(damaged):
         "DELETE FROM wavelet_metadata WHERE name = 'format'",
         "UPDATE wavelet_metadata SET value = '{\"name\": \"another\"}' WHERE name = 'format'",
         "UPDATE wavelet_metadata SET value = '[]' WHERE name = 'format'",
-        "UPDATE wavelet_metadata SET value = json_set(value, '$.version', 3) WHERE name = 'format'",
+        "UPDATE wavelet_metadata SET value = json_set(value, '$.version', 4) WHERE name = 'format'",
         "ALTER TABLE wavelet_arrays RENAME COLUMN shape TO form",
         "ALTER TABLE wavelet_levels RENAME COLUMN n_faces TO faces",
     ],

@@ -4,7 +4,7 @@ import shutil
 
 import numpy as np
 import pytest
-from gis.samples import hills, write_tif
+from gis.samples import hills, write_las, write_tif
 from tools.pyramid_surgery import operate, reseal
 
 from wavelet_core import TriangleMesh, analyse
@@ -19,6 +19,7 @@ DESIGNS = {
     "minimum norm": {"levels": 20},
     "no update": {"norm": "max", "levels": 30},
     "locked": {"levels": 20, "locked": 200},
+    "cloud": {"levels": 20},
 }
 
 
@@ -30,7 +31,10 @@ def geo(request, tmp_path, monkeypatch):
     monkeypatch.setattr(recorded, "PART_SHARE", 1 / 4)
     values = hills(50, 60).astype("f4")
     values[5:9, 7:12] = -9999
-    terrain = open_terrain(write_tif(tmp_path / "a.tif", values, nodata=-9999))
+    if request.param == "cloud":
+        terrain = open_terrain(write_las(tmp_path / "a.laz", 2000), attributes=["intensity"])
+    else:
+        terrain = open_terrain(write_tif(tmp_path / "a.tif", values, nodata=-9999))
     options = dict(DESIGNS[request.param])
     if "locked" in options:
         locked = np.zeros(terrain.mesh.n_vertices, dtype=bool)
@@ -72,7 +76,8 @@ def test_a_coarse_level_needs_nothing_of_the_fine_ones(path, tmp_path):
     operate(
         broken,
         "UPDATE wavelet_chunks SET data = zeroblob(7) WHERE array_id IN (SELECT id FROM "
-        "wavelet_arrays WHERE name LIKE 'parts/0/%' OR name = 'source/residuals')",
+        "wavelet_arrays WHERE name LIKE 'parts/0/%' OR name = 'source/residuals' "
+        "OR name LIKE 'faces/%')",
     )
     with pytest.raises(PyramidError, match="damaged"):
         read_pyramid(broken)

@@ -1,19 +1,30 @@
 """A pyramid file holds all of a pyramid, and writes the same bytes for the same input."""
 
+import contextlib
+import sqlite3
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from gis import samples
+from gis.samples import write_tif
+from helpers_meshes import random_delaunay
 
 from wavelet_core import Cancelled, TriangleMesh, analyse
 from wavelet_core.synthetic import hills
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
-from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary, write_pyramid
+from wavelet_gis.io.pyramid.pyramid_file import (
+    read_input,
+    read_pyramid,
+    read_summary,
+    write_pyramid,
+)
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.points.cloud import PointCloud
+from wavelet_gis.workflows.open import open_terrain
 
 
 def assert_same_pyramid(actual, expected):
@@ -100,6 +111,61 @@ def test_an_altered_pyramid_is_stored_as_such(raster_record, tmp_path):
     values = back.restore().values
     assert values.dtype == np.float32
     assert np.abs(values[values > -9000] - 250).max() < 50
+
+
+def test_an_altered_pyramid_lists_but_what_does_not_follow(raster_record, tmp_path):
+    """Filters follow from the collapses, x and y from the cells; what is read is the same."""
+    pyramid = raster_record.pyramid.with_gains({2: 0.5, 1: 2.0})
+    write_pyramid(tmp_path / "a.gpkg", raster_record.with_pyramid(pyramid, "gains"))
+    back = read_pyramid(tmp_path / "a.gpkg")
+    assert back.pyramid == pyramid
+    summary = read_summary(tmp_path / "a.gpkg")
+    assert summary["format"]["version"] == 3
+    assert (summary["pyramid"]["steps"], summary["pyramid"]["plan"]) == ("places", "cells")
+    names = array_names(tmp_path / "a.gpkg")
+    assert {"steps/0002/odd", "steps/0002/places", "steps/0002/details"} <= names
+    assert not {"horizontal", "steps/0002/target", "steps/0002/weights"} & names
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"locked": True}, {"outline_tolerance": 3.0, "target_vertices": 60}, {"max_error": 0.5}],
+)
+def test_a_tin_of_the_default_design_lists_but_what_does_not_follow(options, tmp_path):
+    mesh = random_delaunay(300, n_attributes=1, seed=5)
+    if options.pop("locked", False):
+        options = {"locked": np.random.default_rng(0).random(mesh.n_vertices) < 0.5}
+    geo = record_of(mesh, **options)
+    write_pyramid(tmp_path / "a.gpkg", geo)
+    assert read_pyramid(tmp_path / "a.gpkg").pyramid == geo.pyramid
+    assert "steps/0000/places" in array_names(tmp_path / "a.gpkg")
+    assert "steps/0000/weights" not in array_names(tmp_path / "a.gpkg")
+
+
+def test_other_designs_list_their_filters(tmp_path):
+    geo = record_of(random_delaunay(200, seed=5), levels=3, prediction="GLMN")
+    write_pyramid(tmp_path / "a.gpkg", geo)
+    assert read_pyramid(tmp_path / "a.gpkg").pyramid == geo.pyramid
+    assert "steps/0000/weights" in array_names(tmp_path / "a.gpkg")
+    assert read_summary(tmp_path / "a.gpkg")["format"]["version"] == 2
+
+
+def test_means_that_repeat_come_back_from_a_palette(tmp_path):
+    terrain = samples.hills(40, 50)
+    thirds = np.rint(100 * terrain / np.ptp(terrain)) / 3.0
+    thirds[3:6, 7:9] = -9999
+    terrain = open_terrain(write_tif(tmp_path / "thirds.tif", thirds, nodata=-9999))
+    geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=3))
+    write_pyramid(tmp_path / "a.gpkg", geo)
+    assert "source/palette" in array_names(tmp_path / "a.gpkg")
+    assert read_summary(tmp_path / "a.gpkg")["format"]["version"] == 3
+    assert read_pyramid(tmp_path / "a.gpkg").pyramid == geo.pyramid
+    assert read_input(tmp_path / "a.gpkg").restore().values.tobytes() == thirds.tobytes()
+
+
+def array_names(path):
+    with contextlib.closing(sqlite3.connect(path)) as connection:
+        return {name for (name,) in connection.execute("SELECT name FROM wavelet_arrays")}
 
 
 def test_the_summary_needs_no_arrays(raster_pyramid, raster_record):

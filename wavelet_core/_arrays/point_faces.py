@@ -1,0 +1,129 @@
+"""Joined points, and the faces of edges; see :mod:`wavelet_core._kernels.point_faces`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .._kernels.point_faces import CLEAR, NOT_ASKED, TIED
+from ._csr import expanded
+
+#: Points that are looked at together: a bound on the memory.
+POINTS_AT_ONCE = 1 << 14
+
+
+def order_nearest(start, stop, first, found, x, y, nearest, reach):
+    here = slice(first, first + len(found))
+    squared = (x[found] - x[here][:, None]) ** 2 + (y[found] - y[here][:, None]) ** 2
+    order = np.lexsort((found, squared), axis=1)
+    reach[here] = np.take_along_axis(squared, order[:, -1:], axis=1)[:, 0]
+    nearest[here] = np.take_along_axis(found, order, axis=1)[:, 1:-1]
+
+
+def classify_pairs(start, stop, x, y, nearest, reach, classes):
+    for first in range(start, stop, POINTS_AT_ONCE):
+        here = slice(first, min(first + POINTS_AT_ONCE, stop))
+        others = nearest[here]
+        offset_x, offset_y = x[others] - x[here][:, None], y[others] - y[here][:, None]
+        squared = offset_x**2 + offset_y**2
+        is_known = squared < reach[here][:, None]
+        ids = np.arange(here.start, here.stop)[:, None]
+        asked = is_known & ((ids < others) | (squared >= reach[others]))
+        of_pairs = _classes(offset_x, offset_y, squared, is_known)
+        classes[here] = np.where(asked, of_pairs, NOT_ASKED)
+
+
+def _classes(x, y, squared, is_known):
+    classes = np.empty(x.shape, dtype=np.uint8)
+    for j in range(x.shape[1]):
+        cross = x[:, j, None] * y - y[:, j, None] * x
+        inner = squared - (x[:, j, None] * x + y[:, j, None] * y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            cotangent = np.where(is_known, inner / np.abs(cross), np.inf)
+        left = np.where(cross > 0, cotangent, np.inf).min(axis=1)
+        right = np.where(cross < 0, cotangent, np.inf).min(axis=1)
+        is_between = (is_known & (cross == 0) & (inner < 0)).any(axis=1)
+        total = left + right
+        classes[:, j] = np.select(
+            [is_between, np.isinf(total), total < -CLEAR, total < -TIED, total <= TIED,
+             total <= CLEAR],
+            [0, 1, 2, 3, 4, 5], 6,
+        )  # fmt: skip
+    classes[(classes == 6) & (np.arange(x.shape[1]) >= x.shape[1] // 2)] = 7
+    return classes
+
+
+def group_pairs(pairs, indptr, others):
+    low, high = pairs.min(axis=1), pairs.max(axis=1)
+    indptr[1:] = np.cumsum(np.bincount(low, minlength=len(indptr) - 1))
+    others[:] = high[np.argsort(low, kind="stable")]
+
+
+def sort_groups(start, stop, indptr, others, is_new):
+    low = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    others[:] = others[np.lexsort((others, low))]
+    is_new[:] = True
+    is_new[1:] = (low[1:] != low[:-1]) | (others[1:] != others[:-1])
+
+
+def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_told):
+    n = len(indptr) - 1
+    keys = np.repeat(np.arange(n), np.diff(indptr)) * n + heads
+    joined[:] = 0
+    v, k = np.nonzero(classes != NOT_ASKED)
+    u = nearest[v, k].astype(np.int64)
+    asked = np.minimum(v, u) * n + np.maximum(v, u)
+    place = np.minimum(np.searchsorted(keys, asked), max(len(keys) - 1, 0))
+    if len(keys):
+        is_edge = keys[place] == asked
+        joined[v, k] = is_edge
+        is_told[place[is_edge]] = True
+
+
+def gather_spokes(edges, indptr, heads, edge_of):
+    tail = np.concatenate([edges[:, 0], edges[:, 1]])
+    order = np.argsort(tail, kind="stable")
+    indptr[1:] = np.cumsum(np.bincount(tail, minlength=len(indptr) - 1))
+    heads[:] = np.concatenate([edges[:, 1], edges[:, 0]])[order]
+    twice = 2 * np.arange(len(edges))
+    edge_of[:] = np.concatenate([twice, twice + 1])[order]
+
+
+def turn_spokes(start, stop, x, y, indptr, heads, edge_of, place):
+    tail = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    across, up = x[heads] - x[tail], y[heads] - y[tail]
+    span = np.abs(across) + np.abs(up)
+    turn = np.divide(up, span, out=np.zeros(len(up)), where=span > 0)
+    turn = np.where(across >= 0, turn, 2.0 - turn)
+    order = np.lexsort((turn, tail))
+    heads[:], edge_of[:] = heads[order], edge_of[order]
+    place[edge_of] = np.arange(len(heads))
+
+
+def count_triangles(start, stop, x, y, indptr, heads, edge_of, place, n_triangles):
+    begins, _ = _triangles(x, y, indptr, heads, edge_of, place)
+    tail = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    n_triangles[:] = np.bincount(tail[begins], minlength=len(n_triangles))
+
+
+def fill_triangles(start, stop, x, y, indptr, heads, edge_of, place, first, triangles):
+    begins, after = _triangles(x, y, indptr, heads, edge_of, place)
+    tail = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    found = np.column_stack([tail[begins], heads[begins], heads[after[begins]]])
+    triangles[:] = found[np.lexsort((found[:, 1], found[:, 0]))]
+
+
+def _triangles(x, y, indptr, heads, edge_of, place):
+    """Return of each spoke whether a triangle begins there, and the one that follows it."""
+    counts = np.diff(indptr)
+    tail, at = expanded(indptr[:-1], counts)
+    after = np.where(at + 1 < indptr[tail + 1], at + 1, indptr[tail])
+    before = np.where(at > indptr[tail], at - 1, indptr[tail + 1] - 1)
+    across, up = x[heads] - x[tail], y[heads] - y[tail]
+    is_convex = across * up[after] - up * across[after] > 0.0
+    b, c = heads, heads[after]
+    begins = is_convex & (b > tail) & (c > tail)
+    at_b = before[place[edge_of ^ 1]]  # from b, the one before that to the tail, to c
+    at_c = place[edge_of[after] ^ 1]  # from c to the tail; the one after it, to b
+    begins &= (heads[at_b] == c) & is_convex[at_b]
+    begins &= (heads[after[at_c]] == b) & is_convex[at_c]
+    return begins, after

@@ -1,0 +1,131 @@
+"""Which points lie near each other, and the faces that edges between them enclose."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from .._kernels._jit import run_in_ranges
+from .._kernels.point_faces import (
+    NOT_ASKED,
+    classify_pairs,
+    count_triangles,
+    fill_triangles,
+    gather_spokes,
+    group_pairs,
+    look_up_pairs,
+    order_nearest,
+    sort_groups,
+    turn_spokes,
+)
+from .._validate import FloatArray
+
+__all__ = ["NOT_ASKED", "NearPairs", "SortedEdges", "near_pairs", "sorted_edges", "triangles_of"]
+
+#: Points whose neighbours are looked for together: a bound on the memory.
+POINTS_AT_ONCE = 1 << 17
+
+
+class NearPairs(NamedTuple):
+    """Of each point the nearest others.
+
+    nearest : (n, m) int32, by distance, then by index
+    classes : (n, m) uint8, how clear it is that they are joined; NOT_ASKED where nobody asks:
+        beyond the reach, or where the other one of the two does
+    """
+
+    nearest: NDArray[np.int32]
+    classes: NDArray[np.uint8]
+
+
+class SortedEdges(NamedTuple):
+    """Edges by their lower ends.
+
+    indptr : (n + 1,) int64; heads : (k,) int32, the higher ends, ascending
+    """
+
+    indptr: NDArray[np.int64]
+    heads: NDArray[np.int32]
+
+    def rows(self) -> NDArray[np.int32]:
+        """Return the edges, ``(k, 2)``, the lower ends first."""
+        tails = np.arange(len(self.indptr) - 1, dtype=np.int32)
+        return np.column_stack([np.repeat(tails, np.diff(self.indptr)), self.heads])
+
+    def are_joined(self, pairs: NearPairs) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+        """Return of each pair that is asked about whether it is an edge, and which edges are."""
+        joined = np.empty(pairs.classes.shape, dtype=np.uint8)
+        is_told = np.zeros(len(self.heads), dtype=bool)
+        run_in_ranges(
+            look_up_pairs, len(joined), pairs.nearest, pairs.classes, self.indptr, self.heads,
+            joined, is_told,
+        )  # fmt: skip
+        return joined, is_told
+
+
+def near_pairs(x: FloatArray, y: FloatArray, n_nearest: int) -> NearPairs:
+    """Return the nearest points of each of some points; docs/format.md tells what is asked.
+
+    Parameters
+    ----------
+    x, y : (n,) float64
+        Whole numbers, so small that sums of their products are exact; ``n > n_nearest + 1``.
+    n_nearest : int
+    """
+    n = len(x)
+    plan = np.column_stack([x, y])
+    tree = cKDTree(plan, balanced_tree=False, compact_nodes=False)
+    reach = np.empty(n)
+    nearest = np.empty((n, n_nearest), dtype=np.int32)
+    for first in range(0, n, POINTS_AT_ONCE):
+        here = plan[first : first + POINTS_AT_ONCE]
+        _, found = tree.query(here, k=n_nearest + 2, workers=-1)
+        run_in_ranges(order_nearest, len(found), first, found, x, y, nearest, reach)
+    classes = np.empty((n, n_nearest), dtype=np.uint8)
+    run_in_ranges(classify_pairs, n, x, y, nearest, reach, classes)
+    return NearPairs(nearest, classes)
+
+
+def sorted_edges(pairs: NDArray[np.int32], n_points: int) -> SortedEdges:
+    """Return pairs of points as edges, each once.
+
+    Parameters
+    ----------
+    pairs : (k, 2) int32
+        Of points below ``n_points``, in any order, with repetitions.
+    n_points : int
+    """
+    indptr = np.zeros(n_points + 1, dtype=np.int64)
+    heads, is_new = np.empty(len(pairs), dtype=np.int32), np.empty(len(pairs), dtype=bool)
+    group_pairs(pairs, indptr, heads)
+    run_in_ranges(sort_groups, n_points, indptr, heads, is_new)
+    before = np.concatenate([[0], np.cumsum(is_new)])
+    return SortedEdges(before[indptr], heads[is_new])
+
+
+def triangles_of(x: FloatArray, y: FloatArray, edges: SortedEdges) -> NDArray[np.int32]:
+    """Return the triangles of edges with no edge inside, the lowest corner first, sorted.
+
+    Parameters
+    ----------
+    x, y : (n,) float64
+        As for `near_pairs`.
+    edges : SortedEdges
+    """
+    n, n_spokes = len(x), 2 * len(edges.heads)
+    indptr = np.zeros(n + 1, dtype=np.int64)
+    heads = np.empty(n_spokes, dtype=np.int32)
+    edge_of = np.empty(n_spokes, dtype=np.int32)
+    place = np.empty(n_spokes, dtype=np.int32)
+    gather_spokes(edges.rows(), indptr, heads, edge_of)
+    run_in_ranges(turn_spokes, n, x, y, indptr, heads, edge_of, place)
+    n_triangles = np.empty(n, dtype=np.int32)
+    spokes = (x, y, indptr, heads, edge_of, place)
+    run_in_ranges(count_triangles, n, *spokes, n_triangles)
+    first = np.concatenate([[0], np.cumsum(n_triangles, dtype=np.int64)])
+    triangles = np.empty((int(first[-1]), 3), dtype=np.int32)
+    run_in_ranges(fill_triangles, n, *spokes, first, triangles)
+    return triangles
