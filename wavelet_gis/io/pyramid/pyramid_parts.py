@@ -97,6 +97,8 @@ def pyramid_to_parts(
         has_cells = _is_plan_of_cells(pyramid, geo.origin, geo.frame)
         if has_cells:
             del arrays["horizontal"]
+        if pyramid.part is not None:
+            arrays["integrals"] = pyramid.part.integrals
     else:
         told, record_arrays = record_to_parts(record)
         arrays.update(record_arrays)
@@ -257,8 +259,6 @@ def listed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]]:
     arrays: dict[str, NDArray[Any]] = {"faces": pyramid.faces, "coarse": pyramid.coarse}
     if pyramid.horizontal is not None:
         arrays["horizontal"] = pyramid.horizontal
-    if pyramid.part is not None:
-        arrays["integrals"] = pyramid.part.integrals
     for level, step in enumerate(pyramid.steps):
         for name in _STEP_ARRAYS:
             arrays[_name_of(level, name)] = getattr(step, name)
