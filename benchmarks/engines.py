@@ -1,10 +1,12 @@
 """The array engine against the compiled one: time, memory, and whether the bytes are the same.
 
-    python benchmarks/engines.py [--data ../shared/data] [--large] [--real]
+    python benchmarks/engines.py [--large]
+    python benchmarks/engines.py --real [--data ../shared/data] [--results FILE.json]
 
 Each run is a process of its own, whose kernels are in numba's cache; ratios are within one run of
 this script. ``whole`` is the time of the process, imports included; memory is what the analysis
-adds to that of the input mesh.
+adds to that of the input mesh. With ``--results`` the figures of real inputs are kept after each,
+and those that the file holds are printed and not run again: it may be stopped and run in parts.
 """
 
 from __future__ import annotations
@@ -39,6 +41,7 @@ else:
     import wavelet_gis as wg
     mesh = wg.open(name).mesh
     if mesh.n_vertices > 1_100_000:
+        print("{}")
         sys.exit(0)
 tolerance = 0.02 * float(np.ptp(mesh.vertices[:, 2]))
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
@@ -75,9 +78,8 @@ def run(engine: str, name: str, n: int, design: str) -> dict:
         [sys.executable, "-W", "ignore", "-c", WORK, name, str(n), design],
         env=environment, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    if not said.stdout:
-        return {}
-    return {**json.loads(said.stdout), "whole": time.perf_counter() - began}
+    figures = json.loads(said.stdout)
+    return {**figures, "whole": time.perf_counter() - began} if figures else {}
 
 
 def compare(name: str, n: int, label: str, design: str) -> None:
@@ -94,18 +96,35 @@ def compare(name: str, n: int, label: str, design: str) -> None:
     )
 
 
-def compare_real(name: str, label: str) -> None:
-    """Print one row of seconds of the processor, which other work on the machine does not touch."""
-    ours = run("compiled", name, 0, DESIGNS[label])
-    if not ours:
-        return
-    theirs = run("arrays", name, 0, DESIGNS[label])
-    same = "same" if ours["digest"] == theirs["digest"] else "DIFFER"
-    print(
-        f"| {Path(name).name} | {label} | {ours['n']:,} | {ours['left']:,} | {ours['used']:.1f} | "
-        f"{theirs['used']:.1f} | {theirs['used'] / ours['used']:.1f} | {same} |",
-        flush=True,
-    )
+def real_inputs(folder: Path) -> list[Path]:
+    """Return the DEMs and clouds, the smallest first, without those far too large."""
+    paths = [*folder.glob("dems/*.tif"), *folder.glob("clouds/*.la[sz]")]
+    small = [path for path in paths if path.stat().st_size < 2e7]
+    return sorted(small, key=lambda path: path.stat().st_size)
+
+
+def compare_real(folder: Path, label: str, results: Path | None) -> None:
+    """Print rows of seconds of the processor, which other work on the machine does not touch."""
+    kept = json.loads(results.read_text("utf-8")) if results and results.exists() else {}
+    for path in real_inputs(folder):
+        key = f"{path.name}, {label}"
+        if key not in kept:
+            run("compiled", str(path), 0, DESIGNS[label])  # into numba's cache
+            kept[key] = {
+                engine: run(engine, str(path), 0, DESIGNS[label])
+                for engine in ("compiled", "arrays")
+            }
+            if results:
+                results.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
+        ours, theirs = kept[key]["compiled"], kept[key]["arrays"]
+        if not ours:  # above a million vertices
+            continue
+        same = "same" if ours["digest"] == theirs["digest"] else "DIFFER"
+        print(
+            f"| {path.name} | {label} | {ours['n']:,} | {ours['left']:,} | {ours['used']:.1f} | "
+            f"{theirs['used']:.1f} | {theirs['used'] / ours['used']:.1f} | {same} |",
+            flush=True,
+        )
 
 
 def main() -> None:
@@ -114,6 +133,7 @@ def main() -> None:
     parser.add_argument("--data", type=Path, default=ROOT.parent / "shared" / "data")
     parser.add_argument("--large", action="store_true", help="a million vertices as well")
     parser.add_argument("--real", action="store_true", help="every DEM and cloud up to a million")
+    parser.add_argument("--results", type=Path, help="keep figures of real inputs here")
     parser.add_argument("--design", choices=DESIGNS, default="10 %", help="of those")
     arguments = parser.parse_args()
     head = "| input | design | vertices | left | compiled, s | arrays, s | ratio | "
@@ -124,13 +144,7 @@ def main() -> None:
             if n < 1000 or label in ("10 %", "tolerance", "GLMN"):
                 compare("synthetic", n, label, design)
     if arguments.real:
-        folder = arguments.data
-        for path in sorted(
-            [*folder.glob("dems/*.tif"), *folder.glob("clouds/*.la[sz]")],
-            key=lambda path: path.stat().st_size,
-        ):
-            if path.stat().st_size < 5e6:
-                compare_real(str(path), arguments.design)
+        compare_real(arguments.data, arguments.design, arguments.results)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 from .errors import Cancelled
 
@@ -39,6 +41,32 @@ def part_of(progress: Progress | None, start: float, stop: float) -> Progress | 
     if progress is None:
         return None
     return lambda fraction: progress(start * (1.0 - fraction) + stop * fraction)
+
+
+_watching: ContextVar[Callable[[float], None] | None] = ContextVar("watching", default=None)
+
+
+@contextmanager
+def watched(look: Callable[[float], None]) -> Iterator[None]:
+    """Have the long steps inside a ``with`` block tell how far they are.
+
+    Parameters
+    ----------
+    look : callable
+        Called with the share of a step that is done, in [0, 1]; it may raise, to stop.
+    """
+    token = _watching.set(look)
+    try:
+        yield
+    finally:
+        _watching.reset(token)
+
+
+def tell_share(share: float) -> None:
+    """Tell whoever watches this step, if anybody does, how much of it is done."""
+    look = _watching.get()
+    if look is not None:
+        look(share)
 
 
 class Meter:

@@ -47,7 +47,6 @@ class ClusterDetails(PyramidAlgorithm):
 
     GROUP = "details"
     PAGE = "clustering"
-    PACKAGES = (dependencies.SCIKIT_LEARN,)
 
     training: QgsProcessingFeatureSource | None
 
@@ -210,6 +209,10 @@ class ClusterDetails(PyramidAlgorithm):
         except ValueError:
             return tr("LAS classes are numbers separated by commas, such as 0,1.")
         return super().refusal(request)
+
+    def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
+        """Return scikit-learn where classes are to be learned."""
+        return (dependencies.SCIKIT_LEARN,) if _teacher(request) != TEACHERS[0] else ()
 
     def take_layers(self, request: Request) -> None:
         """Take the training areas, in the thread that their layer lives in."""

@@ -2010,6 +2010,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
+    <source>classes learned in Cluster details</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
     <source>in Terminal</source>
     <translation type="unfinished"></translation>
   </message>

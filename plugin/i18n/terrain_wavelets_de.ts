@@ -2010,6 +2010,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
+    <source>classes learned in Cluster details</source>
+    <translation>Klassen lernen in „Details gruppieren“</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
     <source>in Terminal</source>
     <translation>im Terminal</translation>
   </message>

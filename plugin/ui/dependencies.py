@@ -58,7 +58,7 @@ def optional_packages() -> list[tuple[Package, str]]:
         (PYTHONCDT, tr("points and breaklines are triangulated four times as fast")),
         (LASPY, tr("LAS files; the zip of the plugin brings a copy")),
         (LAZRS, tr("LAZ and COPC files")),
-        (SCIKIT_LEARN, tr("Cluster details")),
+        (SCIKIT_LEARN, tr("classes learned in Cluster details")),
         (TRIMESH, tr("meshes as GLB")),
         (EZDXF, tr("meshes as DXF")),
     ]

@@ -242,7 +242,7 @@ def test_a_full_disk_while_writing(command, pyramid, tmp_path, monkeypatch):
         with open("/dev/full", "w") as stream:
             stream.write("x" * 100_000)
 
-    monkeypatch.setattr("wavelet_gis.io.meshes.write_mesh", full)
+    monkeypatch.setattr("wavelet_gis.io.mesh.meshes.write_mesh", full)
     outcome = command("extract", pyramid, tmp_path / "a.ply")
     assert module.HELP
     assert outcome.code == 1

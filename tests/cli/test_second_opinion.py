@@ -11,7 +11,7 @@ from gis.samples import hills, write_tif
 from tools.random_terrain import NO_SURFACE, FaultError, compare, trials, try_one
 from tools.second_opinion import errors_of, read_ply, second_opinion
 
-from wavelet_gis.io.meshes import write_mesh
+from wavelet_gis.io.mesh.meshes import write_mesh
 
 pytestmark = pytest.mark.filterwarnings("ignore::wavelet_gis.errors.TerrainWarning")
 

@@ -236,7 +236,6 @@ def test_dems_to_change_by_scale(run_model, tmp_path):
 
 
 def test_dem_to_landform_clusters(run_model, tmp_path):
-    pytest.importorskip("sklearn")
     rough = np.random.default_rng(1).normal(size=(80, 100)) * 3.0
     rough[:, :50] = 0
     x = np.arange(100.0)

@@ -129,7 +129,6 @@ def map_of(layers, width=900, height=640):
 
 
 def test_styled_results(qgis, pyramid_by, tmp_path, keep):
-    pytest.importorskip("sklearn")
     import processing
     from qgis.core import QgsProcessingContext, QgsProject
 

@@ -246,8 +246,6 @@ def test_a_point_cloud_through_qgis_process(qgis_process, data_folder, tmp_path,
 def test_a_model_from_the_command_line_on_its_defaults(
     qgis_process, tmp_path, model, inputs, output, suffix
 ):
-    if model == "dem_to_landform_clusters":
-        pytest.importorskip("sklearn")
     parameters = {
         name: write_raster(
             tmp_path / f"{name}.tif", hills(50, 50, 40.0 + 5 * k).astype("float32"), cell=8.0

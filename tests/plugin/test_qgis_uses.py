@@ -102,10 +102,6 @@ def test_energy_maps_where_the_terrain_is_rough(run, pyramid, tmp_path):
 
 
 class TestClusters:
-    @pytest.fixture(autouse=True)
-    def sklearn(self):
-        pytest.importorskip("sklearn")
-
     def test_two_clusters_are_the_two_halves(self, run, pyramid, tmp_path):
         made = run(
             "clusterdetails",
@@ -126,6 +122,7 @@ class TestClusters:
         assert [row["label"] for row in summary["clusters"]] == [0, 1]
 
     def test_classes_are_learned_from_training_areas(self, run, pyramid, tmp_path):
+        pytest.importorskip("sklearn")
         import processing
 
         boxes = [(700050, 700200), (700800, 700950)]
@@ -263,7 +260,6 @@ class TestEveryOutputOpensStyled:
         assert symbol.color().getRgb()[:3] == (60, 60, 60)
 
     def test_a_cluster_has_one_colour_as_raster_and_as_points(self, opened, pyramid):
-        pytest.importorskip("sklearn")
         parameters = {
             "INPUT": pyramid,
             "COUNT": 3,

@@ -14,9 +14,15 @@ import numpy as np
 from .._kernels.collapse import COLLINEAR_TOLERANCE, FLATNESS_TOLERANCE
 from .._kernels.connectivity import BOUNDARY, INTERIOR
 from .._kernels.partition import EVEN, ODD, ROUNDING
+from ..progress import tell_share
 from ._csr import expanded
 from ._rings import by_size, rings
 from .quadric import evaluate
+
+#: Candidates that are looked at together: a bound on the memory.
+AT_ONCE = 20_000
+#: Share of the time that their targets take, for the progress.
+OF_CHOICES = 0.7
 
 
 class Choices(NamedTuple):
@@ -53,6 +59,7 @@ def label(
     is_open = np.zeros(n, dtype=bool)
     is_open[candidates] = True
     while len(open_rows):
+        tell_share(1.0 - (1.0 - OF_CHOICES) * len(open_rows) / len(candidates))
         open_rows = open_rows[is_open[candidates[open_rows]]]
         if len(open_rows) == 0:
             break
@@ -100,10 +107,13 @@ def _removable(order, in_plan, shape, indptr, ring, ring_size, kind, locked):
 def _choices(candidates, in_plan, shape, points, faces, indptr, ring, ring_size, kind, quadrics):
     sizes = ring_size[candidates]
     first = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
-    places = np.empty(first[-1], dtype=np.int64)
+    places = np.empty(first[-1], dtype=np.int32)
     legal = np.empty(first[-1], dtype=bool)
     edges = _edges(faces, len(points))
-    for size, rows in by_size(sizes):
+    n_done = 0
+    for size, rows in _blocks(sizes):
+        tell_share(OF_CHOICES * n_done / len(candidates))
+        n_done += len(rows)
         v = candidates[rows]
         around = rings(v, size, indptr, ring)
         error = np.zeros(around.shape)
@@ -126,10 +136,18 @@ def _choices(candidates, in_plan, shape, points, faces, indptr, ring, ring_size,
     return Choices(candidates, first, places, legal)
 
 
+def _blocks(sizes):
+    for size, rows in by_size(sizes):
+        for start in range(0, len(rows), AT_ONCE):
+            yield size, rows[start : start + AT_ONCE]
+
+
 def _edges(faces, n):
-    pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]).astype(np.int64)
-    pairs.sort(axis=1)
-    return np.unique(pairs[:, 0] * n + pairs[:, 1])
+    """Return the sorted keys of the edges, those of two faces twice."""
+    a, b, c = faces.T
+    keys = np.concatenate([_keys(a, b, n), _keys(b, c, n), _keys(c, a, n)])
+    keys.sort()
+    return keys
 
 
 def _keys(a, b, n):

@@ -6,6 +6,8 @@ threads in their last digits. Nothing here calls them.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,12 +21,14 @@ MOST_STEPS = 10
 ROWS_AT_ONCE = 4096
 
 
-def moments_of(columns: FloatArray) -> FloatArray:
+def moments_of(columns: FloatArray, tick: Callable[[], None] = lambda: None) -> FloatArray:
     """Return the sums of the products of every two columns, ``(n_columns, n_columns)``.
 
     Parameters
     ----------
     columns : ndarray, shape (n_rows, n_columns)
+    tick : callable
+        Called now and then; it may raise, to stop.
     """
     n_rows, n_columns = columns.shape
     moments = np.zeros((n_columns, n_columns))
@@ -32,6 +36,7 @@ def moments_of(columns: FloatArray) -> FloatArray:
         block = np.ascontiguousarray(columns[first : first + ROWS_AT_ONCE].T)
         for k in range(n_columns):
             moments[k, : k + 1] += np.einsum("jv,v->j", block[: k + 1], block[k])
+        tick()
     return np.tril(moments) + np.tril(moments, -1).T
 
 

@@ -62,7 +62,7 @@ SHARES_OF_PYRAMIDS = (0.0, 0.25, 0.5, 0.75, 1.0)
 #: Levels that share their weights: single ones gain 0.3 % and take twice as long.
 LEVELS_PER_BAND = 2
 #: Vertices on which the weights are fitted; more do not change them.
-MAX_FITTED = 250_000
+MAX_FITTED = 100_000
 #: Step of the numerical derivative, in standard deviations of the noise.
 PROBE_STEP = 0.01
 #: Vertices times probes for the derivative to be accurate enough, for an average of pyramids and
@@ -78,13 +78,14 @@ ROUNDING = 1e-13
 class WeightedSum:
     """One column, and the sum of its damped details that has the least estimated risk.
 
+    :meth:`fit` takes in one pyramid after the other, then :meth:`finish` the details of all
+    vertices, so that neither is in memory beside the other.
+
     Parameters
     ----------
     values : ndarray, shape (n_vertices,)
     noise : Noise
         Its standard deviation above what rounding leaves of the values.
-    bank : UndecimatedBank
-        Measured with noise of this kind.
     n_pyramids, levels : int
         How many pyramids will be taken in, and the most levels that they have.
     seed : int
@@ -94,7 +95,6 @@ class WeightedSum:
         self,
         values: FloatArray,
         noise: Noise,
-        bank: UndecimatedBank,
         n_pyramids: int,
         levels: int,
         seed: int,
@@ -106,29 +106,14 @@ class WeightedSum:
         self._sigma = min(noise.sigma, float(np.ptp(values)))
         self.noise = noise
         self._generator = generator
-        self._bank, self._share = bank, 1.0 / n_pyramids
+        self._share = 1.0 / n_pyramids
         self._rows = (
             slice(None) if n <= MAX_FITTED else np.sort(generator.permutation(n)[:MAX_FITTED])
         )
         n_bands = -(-levels // LEVELS_PER_BAND)
-        n_parts = self._bank.n_scales * self._bank.n_parts
-        self._first_of_vertices = n_bands * OF_PYRAMIDS.n_elements
-        n_columns = self._first_of_vertices + n_parts * OF_VERTICES.n_elements
-        self._columns = np.zeros((min(n, MAX_FITTED), n_columns))
-        self._divergence = np.zeros(n_columns)
-        self._weights = np.zeros(n_columns)
+        self._of_pyramids = np.zeros((n, n_bands * OF_PYRAMIDS.n_elements))
+        self._divergence = np.zeros(self._of_pyramids.shape[1])
         self.result = values.copy()
-
-    @property
-    def uses_pyramids(self) -> bool:
-        """Whether the pyramids have any weight."""
-        return bool(self._weights[: self._first_of_vertices].any())
-
-    def fit_vertices(self) -> None:
-        """Take in the details of all vertices, and their divergence."""
-        shifted, probes = self._shifted(PROBED_BY_VERTICES)
-        for where, damped in self._damped_by_vertices(shifted):
-            self._take_in(where, damped, probes, 1.0)
 
     def fit(self, transform: Transform, gains: list[FloatArray]) -> None:
         """Take in the details of one pyramid, and their divergence."""
@@ -143,11 +128,42 @@ class WeightedSum:
             band = transform.synthesise_bands(
                 {k: damped[k].reshape(len(damped[k]), -1) for k in levels if k >= 0}
             )
-            shape = (*shifted.shape, OF_PYRAMIDS.n_elements)
-            self._take_in(_block(first), band.reshape(shape), probes, self._share)
+            where, band = _block(first), band.reshape(*shifted.shape, OF_PYRAMIDS.n_elements)
+            self._of_pyramids[:, where] += self._share * band[:, 0]
+            self._divergence[where] += self._share * self._slope(band, probes)
 
-    def solve(self, finish: bool) -> None:
-        """Find the weights; with ``finish`` the fitted columns cover all vertices: sum them.
+    def finish(self, bank: UndecimatedBank) -> None:
+        """Take in the details of all vertices, find the weights, and sum.
+
+        Parameters
+        ----------
+        bank : UndecimatedBank
+            Measured with noise of this kind.
+        """
+        n_of_pyramids = self._of_pyramids.shape[1]
+        n_columns = n_of_pyramids + bank.n_scales * bank.n_parts * OF_VERTICES.n_elements
+        columns = np.empty((min(len(self._values), MAX_FITTED), n_columns))
+        columns[:, :n_of_pyramids] = self._of_pyramids[self._rows]
+        divergence = np.zeros(n_columns)
+        divergence[:n_of_pyramids] = self._divergence
+        shifted, probes = self._shifted(PROBED_BY_VERTICES)
+        for where, damped in self._damped_by_vertices(bank, shifted):
+            columns[:, where] = damped[self._rows, 0]
+            divergence[where] = self._slope(damped, probes)
+        del shifted, probes
+        weights = self._weights(columns, divergence, bank.tick)
+        if len(columns) == len(self._values):
+            self.result += np.einsum("vk,k->v", columns, weights)
+            return
+        del columns
+        self.result += np.einsum("vk,k->v", self._of_pyramids, weights[:n_of_pyramids])
+        for where, damped in self._damped_by_vertices(bank, self._values[:, None]):
+            self.result += np.einsum("vk,k->v", damped[:, 0], weights[where])
+
+    def _weights(
+        self, columns: FloatArray, divergence: FloatArray, tick: Callable[[], None]
+    ) -> FloatArray:
+        """Return the weight of each column.
 
         Details are multiplied by 1 + a function of their local energy. Its values at the probed
         energies are the unknowns here, so that they can be kept between dropping and boosting: a
@@ -155,22 +171,21 @@ class WeightedSum:
         hold all details, so they share the bounds. Columns of nothing but rounding, those of a
         plane or of energies that no detail has, take no part.
         """
-        share = len(self._columns) / len(self._values)
-        moments = moments_of(self._columns)
-        pull = -(self._sigma**2) * share * self._divergence
+        share = len(columns) / len(self._values)
+        moments = moments_of(columns, tick)
+        pull = -(self._sigma**2) * share * divergence
         size = np.sqrt(np.diag(moments))
         floor = ROUNDING * max(float(np.sqrt(np.sum(self._values**2))), ROUNDING * size.max())
         holds = size > floor
-        self._weights = np.zeros(len(size))
+        weights = np.zeros(len(size))
         if holds.any():
-            self._weights[holds] = self._changes(
+            weights[holds] = self._changes(
                 moments[np.ix_(holds, holds)],
                 pull[holds],
                 size[holds],
-                np.flatnonzero(holds) < self._first_of_vertices,
+                np.flatnonzero(holds) < self._of_pyramids.shape[1],
             )
-        if finish:
-            self.result += np.einsum("vk,k->v", self._columns, self._weights)
+        return weights
 
     def _changes(
         self,
@@ -198,22 +213,6 @@ class WeightedSum:
                 changes[is_open] = found
         return changes / size
 
-    def add_vertices(self) -> None:
-        """Add the weighted details of all vertices to the result."""
-        for where, damped in self._damped_by_vertices(self._values[:, None]):
-            self.result += np.einsum("vk,k->v", damped[:, 0], self._weights[where])
-
-    def add(self, transform: Transform, gains: list[FloatArray]) -> None:
-        """Add the weighted details of one pyramid to the result."""
-        details = transform.analyse(self._values[:, None])[1]
-        sums = {}
-        for level, (step, gain) in enumerate(zip(transform.steps, gains, strict=True)):
-            damped = _damped(step, details[level], self._sigma * gain, transform.tick)[:, 0]
-            weights = self._weights[_block(len(gains) - 1 - level)]
-            sums[level] = np.einsum("vk,k->v", damped, weights)[:, None]
-        if sums:
-            self.result += self._share * transform.synthesise_bands(sums)[:, 0]
-
     def _shifted(self, n_wanted: int) -> tuple[FloatArray, FloatArray]:
         """Return the column and itself moved a little along random probes, and the probes."""
         n = len(self._values)
@@ -222,21 +221,22 @@ class WeightedSum:
         moved = self._values[:, None] + PROBE_STEP * self._sigma * probes
         return np.column_stack([self._values, moved]), probes
 
-    def _take_in(self, where: slice, damped: FloatArray, probes: FloatArray, share: float) -> None:
-        """Add to some columns those of the values, ``damped[:, 0]``; the others are the probes'."""
-        self._columns[:, where] += share * damped[self._rows, 0]
+    def _slope(self, damped: FloatArray, probes: FloatArray) -> FloatArray:
+        """Return the divergence of columns: ``damped[:, 0]``, the others are the probes'."""
         change = damped[:, 1:] - damped[:, :1]
         slope = np.einsum("vp,vpk->k", probes, change) / probes.shape[1]
-        self._divergence[where] += share * slope / (PROBE_STEP * self._sigma)
+        slope /= PROBE_STEP * self._sigma
+        return slope
 
-    def _damped_by_vertices(self, columns: FloatArray) -> Iterator[tuple[slice, FloatArray]]:
+    def _damped_by_vertices(
+        self, bank: UndecimatedBank, columns: FloatArray
+    ) -> Iterator[tuple[slice, FloatArray]]:
         """Yield where the weights of each part are, and its ``(n_vertices, k, n_elements)``."""
-        first = self._first_of_vertices
-        for scale, details in enumerate(self._bank.details(columns)):
-            for part in range(self._bank.n_parts):
-                one = details[:, :, part]
-                noise = self._sigma * self._bank.noise[scale][:, part]
-                energy = self._bank.local_energy((one / noise[:, None]) ** 2, VERTEX_ROUNDS + scale)
+        first = self._of_pyramids.shape[1]
+        for scale, details in enumerate(bank.details(columns)):
+            for part, one in enumerate(details):
+                noise = self._sigma * bank.noise[scale][:, part].astype(np.float64)
+                energy = bank.local_energy((one / noise[:, None]) ** 2, VERTEX_ROUNDS + scale)
                 end = first + OF_VERTICES.n_elements
                 yield slice(first, end), OF_VERTICES.parts(one, energy)
                 first = end

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,18 +15,20 @@ from ..lifting.pyramid import Pyramid
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Meter, Progress, report
 from . import _weighted_sum
+from ._bounded import ROWS_AT_ONCE
 from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
 from .noise import check_sigma, noise_columns, noise_gains
-from .noise_model import Noise, RangeOption, noise_of
+from .noise_model import OUTLIER_PASSES, ROWS_OF_RANKS, Noise, RangeOption, noise_of
 from .undecimated import UndecimatedBank
 
 #: Scales of the details of all vertices for a level of a pyramid: they reach as far.
 SCALES_PER_LEVEL = 0.5
 #: A pyramid for denoising stops where its mesh would be smaller than this.
 LEAST_VERTICES = 100
-#: Time that the details of all vertices take, in pyramids: for the progress.
-TIME_OF_VERTICES = 2
+#: For the progress: the shares of what goes before the pyramids and of the filters of all vertices,
+#: the time that the details of all vertices take, in pyramids, and that of a pyramid's analysis.
+BEFORE_PYRAMIDS, OF_BANK, TIME_OF_VERTICES, OF_ANALYSIS = 0.05, 0.08, 1.5, 0.85
 
 
 def denoise(
@@ -138,7 +140,8 @@ def denoise(
     chosen = {name: channel_index(names, name) for name in channels}
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
     meter = Meter(progress, "denoising was cancelled; nothing was kept.")
-    meter.begin(0.0, 0.02, 1)
+    n_steps = OUTLIER_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
+    meter.begin(0.0, BEFORE_PYRAMIDS, n_steps * len(chosen))
     noises = {}
     for name, c in chosen.items():
         noises[name], columns[:, c] = noise_of(
@@ -160,7 +163,7 @@ def denoise(
         weighted = [
             decompositions.weighted_sum(columns[:, chosen[name]], noises[name]) for name in noisy
         ]
-        _run(decompositions, weighted, meter)
+        decompositions.run(weighted)
         for name, one in zip(noisy, weighted, strict=True):
             columns[:, chosen[name]] = one.result
     report(progress, 1.0, "denoising was cancelled; nothing was kept.")
@@ -191,34 +194,56 @@ class _Decompositions:
         meter: Meter,
     ) -> None:
         self._mesh, self._prediction, self._locked, self._seed = mesh, prediction, locked, seed
-        self.n_pyramids = n_pyramids
-        self.n_vertices = mesh.n_vertices
-        self.levels = _depth(mesh.n_vertices, levels)
+        self._n_pyramids = n_pyramids
+        self._levels = _depth(mesh.n_vertices, levels)
         self._meter = meter
-        noise = noise_columns(mesh.n_vertices, seed)
-        n_scales = max(round(SCALES_PER_LEVEL * self.levels), 1)
-        meter.begin(0.02, 0.1, 150 + mesh.n_vertices // 25_000)
-        self.bank = UndecimatedBank.from_mesh(mesh, n_scales, noise, locked, meter.tick)
 
     def weighted_sum(self, values: FloatArray, noise: Noise) -> WeightedSum:
         """Return the sum of a column's details, whose weights are yet to be fitted."""
-        bank = self.bank
-        if not noise.is_plain:
-            bank = bank.for_noise(noise.columns(self.n_vertices, self._seed))
-        return WeightedSum(values, noise, bank, self.n_pyramids, self.levels, self._seed)
+        return WeightedSum(values, noise, self._n_pyramids, self._levels, self._seed)
 
-    def pyramids(self) -> Iterator[Transform]:
-        """Yield the transform of each pyramid."""
-        for k in range(self.n_pyramids):
-            seed = self._seed * 1_000_003 + k
-            pyramid = self._analysed(seed)
-            yield Transform.from_pyramid(pyramid, self._meter.tick)
+    def run(self, weighted: Sequence[WeightedSum]) -> None:
+        """Fit the weights of every column and sum."""
+        span = (1.0 - BEFORE_PYRAMIDS - OF_BANK) / (self._n_pyramids + TIME_OF_VERTICES)
+        for k in range(self._n_pyramids):
+            start, stop = BEFORE_PYRAMIDS + k * span, BEFORE_PYRAMIDS + (k + 1) * span
+            self._meter.begin(start, start + OF_ANALYSIS * span, 1)
+            pyramid = self._analysed(self._seed * 1_000_003 + k)
+            n_steps = (4 + 9 * len(weighted)) * self._levels
+            self._meter.begin(start + OF_ANALYSIS * span, stop, n_steps)
+            self._take_in(Transform.from_pyramid(pyramid, self._meter.tick), weighted)
+            del pyramid
+        self._finish(weighted, 1.0 - OF_BANK - TIME_OF_VERTICES * span)
 
-    def gains(self, transform: Transform, noise: Noise) -> list[FloatArray]:
+    def _take_in(self, transform: Transform, weighted: Sequence[WeightedSum]) -> None:
+        """Fit one pyramid to every column."""
+        for one in weighted:
+            one.fit(transform, self._gains(transform, one.noise))
+
+    def _finish(self, weighted: Sequence[WeightedSum], start: float) -> None:
+        """Take in the details of all vertices."""
+        n, meter = self._mesh.n_vertices, self._meter
+        meter.begin(start, start + OF_BANK, 150 + n // 25_000)
+        n_scales = max(round(SCALES_PER_LEVEL * self._levels), 1)
+        plain = UndecimatedBank.from_mesh(
+            self._mesh, n_scales, noise_columns(n, self._seed), self._locked, meter.tick
+        )
+        rounds = sum(VERTEX_ROUNDS + k for k in range(plain.n_scales)) * plain.n_parts
+        rounds += 2 ** (plain.n_scales - 1)
+        n_fitted = min(n, _weighted_sum.MAX_FITTED)
+        n_times, n_blocks = 1 if n == n_fitted else 2, n_fitted // ROWS_AT_ONCE
+        meter.begin(start + OF_BANK, 0.99, len(weighted) * (n_times * rounds + n_blocks))
+        for one in weighted:
+            bank = plain
+            if not one.noise.is_plain:
+                bank = plain.for_noise(one.noise.columns(n, self._seed))
+            one.finish(bank)
+
+    def _gains(self, transform: Transform, noise: Noise) -> list[FloatArray]:
         """Return how noise reaches the details of a pyramid."""
         if noise.is_plain:
             return noise_gains(transform, seed=self._seed)
-        columns = noise.columns(self.n_vertices, self._seed)
+        columns = noise.columns(self._mesh.n_vertices, self._seed)
         return noise_gains(transform, columns=columns, relative=noise.relative)
 
     def _analysed(self, seed: int) -> Pyramid:
@@ -228,7 +253,7 @@ class _Decompositions:
         plan = TriangleMesh._trusted(flat, mesh.faces, np.empty((mesh.n_vertices, 0)), ())
         return analyse(
             plan,
-            levels=self.levels,
+            levels=self._levels,
             partition="random",
             prediction=self._prediction,
             update="minimum_norm",
@@ -236,37 +261,6 @@ class _Decompositions:
             seed=seed,
             progress=self._meter.part,
         )
-
-
-def _run(decompositions: _Decompositions, weighted: Sequence[WeightedSum], meter: Meter) -> None:
-    """Fit the weights of every column, then sum; meshes too large to keep are gone over twice."""
-    fits_in_one = decompositions.n_vertices <= _weighted_sum.MAX_FITTED
-    n_parts = (decompositions.n_pyramids + TIME_OF_VERTICES) * (1 if fits_in_one else 2)
-    n_done = 0
-
-    def begin(n_taken: int, n_steps: int) -> None:
-        nonlocal n_done
-        span = 0.89 / n_parts
-        meter.begin(0.1 + n_done * span, 0.1 + (n_done + n_taken) * span, n_steps)
-        n_done += n_taken
-
-    n_levels, bank = decompositions.levels, decompositions.bank
-    of_vertices = sum(VERTEX_ROUNDS + k for k in range(bank.n_scales)) * bank.n_parts
-    for is_fit in (True,) if fits_in_one else (True, False):
-        begin(TIME_OF_VERTICES, len(weighted) * (of_vertices + 2 ** (bank.n_scales - 1)))
-        for one in weighted:
-            (one.fit_vertices if is_fit else one.add_vertices)()
-        if is_fit or any(one.uses_pyramids for one in weighted):
-            transforms = decompositions.pyramids()
-            for _ in range(decompositions.n_pyramids):
-                begin(1, (4 + 9 * len(weighted)) * n_levels)
-                transform = next(transforms)
-                for one in weighted:
-                    gains = decompositions.gains(transform, one.noise)
-                    (one.fit if is_fit else one.add)(transform, gains)
-        if is_fit:
-            for one in weighted:
-                one.solve(fits_in_one)
 
 
 def _depth(n_vertices: int, levels: int) -> int:

@@ -26,6 +26,8 @@ ROUNDED = 6.0
 OUTLIER_DEVIATIONS, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE = 5.0, 1.0, 4.0
 #: Looks for outliers: each sees those that others stood beside.
 OUTLIER_PASSES = 5
+#: Vertices whose neighbours are put in order at once.
+ROWS_OF_RANKS = 50_000
 #: Vertices of fewer neighbours, at corners, are none.
 LEAST_NEIGHBOURS = 4
 #: Rounds in which an outlier is filled from its neighbours.
@@ -35,6 +37,10 @@ FILL_ROUNDS = 20
 VERTICES_OF_BLOCK, BLUR_OF_BLOCKS, DEVIATION_OF_BLOCK = 25, 0.5, 0.9
 #: Correlation lengths that are tried, in mean distances of neighbours.
 TRIED_RANGES = (0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0)
+#: Share of the vertices, the flatter ones, that tell how the finest details grow with relief.
+SHARE_SLOPED = 0.6
+#: Powers of the coarser energy with which they may do so.
+POWERS_OF_RELIEF = (0.5, 0.75, 1.0)
 #: Scales by which they are told, and the share of the vertices, the flattest, that tell.
 N_TOLD, SHARE_TOLD = 3, 0.5
 #: Noise of one deviation is the same in the flattest places, this share of the vertices, as in the
@@ -178,7 +184,7 @@ def noise_of(
     quantum = 0.0
     if sigma is None:
         quantum = rounding_step(values)
-    standing_out, without = without_outliers(mesh, values, sigma, quantum)
+    standing_out, without = without_outliers(mesh, values, sigma, quantum, tick)
     tick()
     found = standing_out if outliers else None
     values = without if outliers else values
@@ -211,11 +217,13 @@ def noise_of(
             half = _deviations(bank, values, alike[:, 0])[0]
             noise = replace(noise, sigma=_floored(float(np.median(half)), quantum))
     elif not is_told and not local_noise:
-        white = noise_columns(mesh.n_vertices, seed)[:, 0]
-        half, flattest = _deviations(bank, values, white)
-        if noise.is_rough or flattest[0] < STEADY_WHITE * half[0]:
-            deviation = min(float(flattest[0]), noise.sigma)
-            noise = replace(noise, sigma=_floored(deviation, quantum), is_rough=True)
+        white = noise_columns(mesh.n_vertices, seed)[:, :4]
+        half, flattest = _deviations(bank, values, white[:, 0])
+        is_rough = noise.is_rough or bool(flattest[0] < STEADY_WHITE * half[0])
+        ending = _where_relief_ends(bank, values, white)
+        if is_rough or ending < STEADY_WHITE * noise.sigma:
+            deviation = _floored(min(ending, noise.sigma), quantum)
+            noise = replace(noise, sigma=deviation, is_rough=is_rough)
     if local_noise:
         local = _map_of_noise(bank, plan, values, noise, seed)
         if local is not None:
@@ -248,7 +256,11 @@ def rounding_step(values: FloatArray) -> float:
 
 
 def without_outliers(
-    mesh: TriangleMesh, values: FloatArray, sigma: float | None = None, quantum: float = 0.0
+    mesh: TriangleMesh,
+    values: FloatArray,
+    sigma: float | None = None,
+    quantum: float = 0.0,
+    tick: Callable[[], None] = lambda: None,
 ) -> tuple[IntArray, FloatArray]:
     """Return the vertices that stand out of their rings, and the values with those filled.
 
@@ -260,6 +272,8 @@ def without_outliers(
         Standard deviation of the noise; by default estimated.
     quantum : float
         Step to which the values were rounded.
+    tick : callable
+        Called now and then; it may raise, to stop.
 
     Notes
     -----
@@ -271,19 +285,21 @@ def without_outliers(
     n = mesh.n_vertices
     if n == 0 or not len(mesh.faces):
         return np.empty(0, np.int64), values
-    row, column, _ = rings(mesh)
-    keeps = row != column
-    row, column = row[keeps], column[keeps]
+    around = rings(mesh, tick)
+    keeps = around.rows != around.indices
+    row, column = around.rows[keeps], around.indices[keeps]
+    del around, keeps
+    tick()
     deviation = _floored(estimate_noise(mesh, values), quantum) if sigma is None else sigma
     # At an outline all neighbours may lie downhill.
     is_inside = np.bincount(row, minlength=n) == np.bincount(mesh.faces.ravel(), minlength=n)
+    tick()
     relief_counts = np.where(is_inside, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE)
     rank = np.where(is_inside, 2, 1)
     is_out = np.zeros(n, dtype=bool)
     for _ in range(OUTLIER_PASSES):
         good = ~is_out[column]
-        at = row[good], values[column[good]]
-        highest, lowest = _high(*at, rank, n), -_high(at[0], -at[1], rank, n)
+        lowest, highest = _low_and_high(row[good], values[column[good]], rank, tick)
         known = np.isfinite(highest) & np.isfinite(lowest)
         relief = np.where(known, np.maximum(highest - lowest, 0.0), np.inf)
         excess = np.maximum(values - highest, lowest - values)
@@ -323,15 +339,26 @@ def _floored(sigma: float, quantum: float) -> float:
     return max(sigma, quantum / np.sqrt(ROUNDED))
 
 
-def _high(row: IntArray, values: FloatArray, rank: IntArray, n: int) -> FloatArray:
-    """Return the value of a rank, 1 the highest, of each row; minus infinity of too few."""
-    found = np.full(n, -np.inf)
-    order = np.lexsort((values, row))
+def _low_and_high(
+    row: IntArray, values: FloatArray, rank: IntArray, tick: Callable[[], None]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the values of a rank, 1 the outmost, from below and from above, of each row.
+
+    Infinite, so that nothing stands out, where a row has too few.
+    """
+    n = len(rank)
+    low, high = np.full(n, np.inf), np.full(n, -np.inf)
     counts = np.bincount(row, minlength=n)
-    last = np.cumsum(counts)
-    has = counts >= LEAST_NEIGHBOURS
-    found[has] = values[order][(last - rank)[has]]
-    return found
+    ends = np.concatenate([[0], np.cumsum(counts)])
+    for first in range(0, n, ROWS_OF_RANKS):
+        here = np.arange(first, min(first + ROWS_OF_RANKS, n))
+        part = slice(int(ends[first]), int(ends[here[-1] + 1]))
+        in_order = values[part][np.lexsort((values[part], row[part]))]
+        here = here[counts[here] >= LEAST_NEIGHBOURS]
+        low[here] = in_order[ends[here] - part.start + rank[here] - 1]
+        high[here] = in_order[ends[here + 1] - part.start - rank[here]]
+        tick()
+    return low, high
 
 
 def _filled(row: IntArray, column: IntArray, values: FloatArray, is_out: np.ndarray) -> FloatArray:
@@ -372,11 +399,53 @@ def _told_deviations(
     The flattest places are also those where the noise happens to be weak; the noise that this is
     compared with goes the same way.
     """
-    details = [one.sum(axis=2)[:, 0] for one in bank.details((column - column.mean())[:, None])]
+    details = [
+        sum(parts[1:], start=parts[0])[:, 0]
+        for parts in bank.details((column - column.mean())[:, None])
+    ]
     energy = bank.local_energy(details[-1] ** 2, 8)
     flat = energy <= np.quantile(energy, share)
     told = np.array([np.median(np.abs(one[flat])) / NORMAL_MAD for one in details[:N_TOLD]])
     return np.maximum(told, 1e-300)
+
+
+def _where_relief_ends(bank: UndecimatedBank, values: FloatArray, white: FloatArray) -> float:
+    """Return the deviation of white noise that the finest details tend to as relief goes to zero.
+
+    The squares of the finest details, in shares of the vertices by their relief at a coarser scale,
+    grow with a power of that energy: with the energy itself where the same relief is higher in one
+    place than in another, with its root where relief is the rougher the finer one looks. That of
+    a few powers which fits the flatter shares best is followed down from the flattest one; where
+    that is flat, there is nowhere to go.
+    """
+    both = np.column_stack([values - values.mean(), white])
+    finest, coarser = np.empty(0), np.empty(0)
+    for scale, parts in enumerate(bank.details(both)):
+        if scale in (0, N_TOLD):
+            together = sum(parts[1:], start=parts[0])
+            finest, coarser = (np.abs(together), coarser) if scale == 0 else (finest, together)
+    energy = bank.local_energy(coarser[:, 0] ** 2, 8)
+    order = np.argsort(energy, kind="stable")
+    shares = np.array_split(order, round(1 / SHARE_FLATTEST))[
+        : round(SHARE_SLOPED / SHARE_FLATTEST)
+    ]
+    coarse = np.array([energy[share].mean() for share in shares])
+    squares = np.array(
+        [np.median(finest[share, 0]) ** 2 / np.median(finest[share, 1:]) ** 2 for share in shares]
+    )
+    weights = 1.0 / np.maximum(squares, 1e-6 * max(float(squares.max()), 1e-300)) ** 2
+    weights /= weights.sum()
+    rest = squares - np.sum(weights * squares)
+    least, found = np.inf, float(squares[0])
+    for power in POWERS_OF_RELIEF:
+        relief = (coarse / max(float(coarse.mean()), 1e-300)) ** power
+        apart = relief - np.sum(weights * relief)
+        spread = float(np.sum(weights * apart**2))
+        slope = max(float(np.sum(weights * apart * rest)) / spread, 0.0) if spread > 0 else 0.0
+        misfit = float(np.sum(weights * (rest - slope * apart) ** 2))
+        if misfit < least:
+            least, found = misfit, float(squares[0] - slope * relief[0])
+    return float(np.sqrt(max(found, squares[0] / 4.0)))
 
 
 def _told_range(bank: UndecimatedBank, plan: FloatArray, values: FloatArray, seed: int) -> float:
@@ -400,8 +469,11 @@ def _map_of_noise(
     """Return the deviation of the noise at each vertex; None where it is the same everywhere.
 
     The finest details, smoothed out twice so that hills leave nothing in them, are compared by
-    their root mean square in blocks of the map, what is above three times the median counting as
-    that. What so few would vary by alone is taken off before the map is believed.
+    their mean square in blocks of the map, what is above three times the median counting as that.
+    The map is believed where it varies by more than so few would alone. Squares are smoothed, not
+    logarithms, and nothing is pulled towards the middle: the estimate of the risk goes by squares,
+    and a map that is even too low where the noise is strong leaves it there. Measured on ten DEMs
+    with noise that grows with the slope.
     """
     both = np.column_stack([values - values.mean(), noise.columns(len(values), seed)[:, :4]])
     for _ in range(2):
@@ -422,19 +494,24 @@ def _map_of_noise(
     limit = 3.0 * medians[block] / NORMAL_MAD
     squares = np.bincount(block, np.minimum(size, limit) ** 2, n_blocks) / np.maximum(counts, 1)
     weight = is_told.reshape(shape).astype(np.float64)
+    around = np.maximum(_blurred(weight), 1e-12)
     logs = 0.5 * np.log(np.where(is_told, squares, 1.0)).reshape(shape)
     centre = float(np.median(logs[weight > 0]))
-    smooth = ndimage.gaussian_filter((logs - centre) * weight, BLUR_OF_BLOCKS, mode="nearest")
-    smooth /= np.maximum(ndimage.gaussian_filter(weight, BLUR_OF_BLOCKS, mode="nearest"), 1e-12)
-    spread = float(np.var(smooth[weight > 0]))
+    smooth = _blurred((logs - centre) * weight) / around
     by_chance = DEVIATION_OF_BLOCK**2 / VERTICES_OF_BLOCK
-    if spread <= 2 * by_chance:
+    if float(np.var(smooth[weight > 0])) <= 2 * by_chance:
         return None
-    smooth *= np.sqrt(1.0 - by_chance / spread)
+    apart = np.where(is_told, squares, 0.0).reshape(shape) - np.exp(2 * centre) * weight
+    variance = np.exp(2 * centre) + _blurred(apart) / around
     at = (plan / side - 0.5).T
-    logs_here = ndimage.map_coordinates(smooth, at, order=1, mode="nearest")
-    local: FloatArray = np.exp(centre + logs_here)
+    found = ndimage.map_coordinates(variance, at, order=1, mode="nearest")
+    local: FloatArray = np.sqrt(np.maximum(found, 1e-300))
     return local
+
+
+def _blurred(blocks: FloatArray) -> FloatArray:
+    blurred: FloatArray = ndimage.gaussian_filter(blocks, BLUR_OF_BLOCKS, mode="nearest")
+    return blurred
 
 
 def _medians_of_blocks(

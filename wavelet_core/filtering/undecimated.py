@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csr_array, diags, identity  # the array forms are not in SciPy 1.10
+from scipy.sparse import coo_array, csr_array
 
 from .._validate import FloatArray
 from ..mesh.triangle_mesh import TriangleMesh
@@ -28,7 +29,7 @@ POOL_ROUNDS = 2
 #: Least variance of noise at a vertex, relative to the mean of all.
 LEAST_VARIANCE = 1e-3
 #: Vertices whose local fits are solved between two looks at whether to stop.
-FITTED_AT_ONCE = 50_000
+FITTED_AT_ONCE = 20_000
 #: Each scale but the first smooths twice as often as the one before.
 ROUNDS_OF_SCALE = (1, 1, 2, 4, 8, 16, 32, 64, 128)
 
@@ -51,7 +52,7 @@ class UndecimatedBank:
         Mean over a vertex and its ring.
     strengths : ndarray, shape (n_scales,)
         What the curvatures of a scale are multiplied by to make up most of its details.
-    noise : tuple of ndarray, each (n_vertices, n_parts)
+    noise : tuple of ndarray of float32, each (n_vertices, n_parts)
         Standard deviation that noise of 1 leaves in the details of each scale.
     tick : callable
         Called after every pass over the mesh; it may raise, to stop.
@@ -75,7 +76,7 @@ class UndecimatedBank:
     curvatures: tuple[csr_array, ...]
     averaging: csr_array
     strengths: FloatArray
-    noise: tuple[FloatArray, ...]
+    noise: tuple[NDArray[np.float32], ...]
     tick: Callable[[], None] = _nothing
 
     @classmethod
@@ -102,23 +103,17 @@ class UndecimatedBank:
             See the attribute.
         """
         tick()
-        rows, columns, offsets = rings(mesh, tick)
-        is_free = np.ones(mesh.n_vertices)
+        around = rings(mesh, tick)
+        is_locked = np.zeros(mesh.n_vertices, dtype=bool)
         if locked is not None:
-            is_free -= np.asarray(locked, dtype=bool)
-        tick()
-        smoother = _smoother(rows, columns, offsets, mesh.n_vertices, tick)
-        averaging = csr_array(
-            (np.ones(len(rows)), (rows, columns)), shape=(mesh.n_vertices, mesh.n_vertices)
-        )
+            is_locked |= np.asarray(locked, dtype=bool)
+        has_directions = mesh.n_vertices >= LEAST_FOR_DIRECTIONS
+        smooth, along = _entries(around, mesh.vertices[:, :2], is_locked, has_directions, tick)
+        counts = np.diff(around.indptr)
         bank = cls(
-            csr_array(diags(is_free) @ smoother + diags(1.0 - is_free)),
-            tuple(
-                csr_array(diags(is_free) @ one) for one in _curvatures(rows, columns, offsets, tick)
-            )
-            if mesh.n_vertices >= LEAST_FOR_DIRECTIONS
-            else (),
-            csr_array(diags(1.0 / averaging.sum(axis=1)) @ averaging),
+            around.matrix(smooth),
+            tuple(around.matrix(one) for one in along),
+            around.matrix(np.repeat(1.0 / counts, counts)),
             np.ones(min(n_scales, len(ROUNDS_OF_SCALE))),
             (),
             tick,
@@ -139,11 +134,13 @@ class UndecimatedBank:
         """Into how many parts the details of a scale are split."""
         return len(self.curvatures) + 1
 
-    def details(self, columns: FloatArray) -> Iterator[FloatArray]:
-        """Yield the details of each scale from the finest, ``(n_vertices, k, n_parts)``."""
+    def details(self, columns: FloatArray) -> Iterator[list[FloatArray]]:
+        """Yield the details of each scale from the finest: its parts, each ``(n_vertices, k)``."""
         for scale, strength in enumerate(self.strengths):
             details, along, columns = self._split(columns, scale)
-            yield _parts(details, along, strength)
+            parts = list(_parts_of(details, along, strength))
+            del details, along
+            yield parts
 
     def local_energy(self, energy: FloatArray, rounds: int) -> FloatArray:
         """Return values ``(n_vertices, ...)`` averaged over their neighbourhood."""
@@ -176,101 +173,133 @@ class UndecimatedBank:
                 together = sum(along[1:], start=along[0])
                 most = float(np.sum(together**2))
                 strengths[scale] = float(np.sum(details * together)) / most if most > 0 else 0.0
-            squares = np.mean(_parts(details, along, strengths[scale]) ** 2, axis=1)
+            squares = np.empty((len(noise), self.n_parts))
+            for part, one in enumerate(_parts_of(details, along, strengths[scale])):
+                squares[:, part] = np.mean(one**2, axis=1)
+                self.tick()
+            del details, along
             variance = self.local_energy(squares, POOL_ROUNDS + scale)
             floor = LEAST_VARIANCE * variance.mean(axis=0)
-            deviations.append(np.sqrt(variance + np.where(floor > 0, floor, 1.0)))
+            variance += np.where(floor > 0, floor, 1.0)
+            # An estimate, of far fewer digits than these.
+            deviations.append(np.sqrt(variance).astype(np.float32))
         return replace(self, strengths=strengths, noise=tuple(deviations))
 
 
-def _parts(details: FloatArray, along: list[FloatArray], strength: float) -> FloatArray:
-    """Return the details along each direction and the rest, ``(n_vertices, k, n_parts)``."""
-    parts = [strength * one for one in along]
-    return np.stack([*parts, details - sum(parts)], axis=2)
+def _parts_of(
+    details: FloatArray, along: list[FloatArray], strength: float
+) -> Iterator[FloatArray]:
+    """Yield the details along each direction, and the rest."""
+    rest = details
+    if along:
+        together = strength * along[0]
+        for one in along[1:]:
+            together = together + strength * one
+        rest = details - together
+    for one in along:
+        yield strength * one
+    yield rest
 
 
-def rings(
-    mesh: TriangleMesh, tick: Callable[[], None] = _nothing
-) -> tuple[IndexArray, IndexArray, FloatArray]:
-    """Return vertex, neighbour and offset in mean ring distances; every vertex is its own too."""
+class Rings(NamedTuple):
+    """Every vertex with its neighbours and itself, in the rows of a sparse matrix.
+
+    indptr : (n_vertices + 1,) int32; indices : (n_entries,) int32
+    """
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+
+    @property
+    def rows(self) -> NDArray[np.int32]:
+        """The vertex of each entry."""
+        return np.repeat(np.arange(len(self.indptr) - 1, dtype=np.int32), np.diff(self.indptr))
+
+    def matrix(self, entries: FloatArray) -> csr_array:
+        """Return the matrix of some entries; all of them share the arrays of their places."""
+        n = len(self.indptr) - 1
+        return csr_array((entries, self.indices, self.indptr), shape=(n, n))
+
+
+def rings(mesh: TriangleMesh, tick: Callable[[], None] = _nothing) -> Rings:
+    """Return the neighbours of every vertex, in the order of their numbers, itself among them."""
     n = mesh.n_vertices
-    a, b, c = mesh.faces.T
-    start, end = np.concatenate([a, b, c, b, c, a]), np.concatenate([b, c, a, a, b, c])
-    pattern = csr_array((np.ones(len(start)), (start, end)), shape=(n, n))
-    pattern = csr_array(pattern + identity(n))
+    a, b, c = mesh.faces.astype(np.int32, copy=False).T
+    own = np.arange(n, dtype=np.int32)
+    start = np.concatenate([a, b, c, b, c, a, own])
+    end = np.concatenate([b, c, a, a, b, c, own])
+    pattern = coo_array((np.ones(len(start), np.int8), (start, end)), shape=(n, n))
+    del start, end
     tick()
-    pattern.sort_indices()
+    found = csr_array(pattern)
     tick()
-    rows = np.repeat(np.arange(n), np.diff(pattern.indptr))
-    columns = pattern.indices.astype(np.int64)
-    offsets = mesh.vertices[columns, :2] - mesh.vertices[rows, :2]
+    found.sort_indices()
     tick()
-    total = np.bincount(rows, np.hypot(*offsets.T), n)
-    mean = total / np.maximum(np.bincount(rows, minlength=n) - 1, 1)
-    return rows, columns, offsets / np.where(mean > 0, mean, 1.0)[rows, None]
+    return Rings(
+        found.indptr.astype(np.int32, copy=False), found.indices.astype(np.int32, copy=False)
+    )
 
 
-def _smoother(
-    rows: IndexArray,
-    columns: IndexArray,
-    offsets: FloatArray,
-    n: int,
-    tick: Callable[[], None] = _nothing,
-) -> csr_array:
+def _entries(
+    around: Rings,
+    plan: FloatArray,
+    is_locked: NDArray[np.bool_],
+    has_directions: bool,
+    tick: Callable[[], None],
+) -> tuple[FloatArray, list[FloatArray]]:
+    """Return the entries of the smoother, and of the curvatures if they are asked for."""
+    smooth = np.empty(len(around.indices))
+    along = [np.empty(len(smooth)) for _ in range(N_DIRECTIONS if has_directions else 0)]
+    for first in range(0, len(plan), FITTED_AT_ONCE):
+        ends = around.indptr[first : first + FITTED_AT_ONCE + 1]
+        part, n = slice(int(ends[0]), int(ends[-1])), len(ends) - 1
+        columns = around.indices[part]
+        rows = np.repeat(np.arange(n), np.diff(ends))
+        is_own = columns == rows + first
+        # In mean distances of the ring.
+        offsets = plan[columns] - plan[first : first + n][rows]
+        mean = np.bincount(rows, np.hypot(*offsets.T), n) / np.maximum(np.diff(ends) - 1, 1)
+        offsets /= np.where(mean > 0, mean, 1.0)[rows, None]
+        held = is_locked[first : first + n][rows]
+        smooth[part] = np.where(held, is_own, _of_smoother(rows, offsets, n))
+        tick()
+        if along:
+            found = _of_curvatures(rows, is_own, offsets, n)
+            for one, entries in zip(along, found, strict=True):
+                one[part] = np.where(held, 0.0, entries)
+            tick()
+    return smooth, along
+
+
+def _of_smoother(rows: IndexArray, offsets: FloatArray, n: int) -> FloatArray:
     """Return the value at each vertex of a plane fitted to it and its ring, by least squares."""
-    entries = np.empty(len(rows))
-    for part, here, n_here in _blocks(rows, n):
-        dx = offsets[part]
-        weights = np.exp(-0.5 * np.sum(dx**2, axis=1) / SMOOTHER_WIDTH**2)
-        terms = np.column_stack([np.ones(len(here)), dx])
-        normal = _normal_equations(here, weights, terms, n_here)
-        normal[:, [1, 2], [1, 2]] += PLANE_RIDGE * normal[:, :1, 0]
-        value = np.linalg.inv(normal)[:, 0]
-        entries[part] = np.einsum("ek,ek->e", value[here], terms) * weights
-        tick()
-    return csr_array((entries, (rows, columns)), shape=(n, n))
+    weights = np.exp(-0.5 * np.sum(offsets**2, axis=1) / SMOOTHER_WIDTH**2)
+    terms = np.column_stack([np.ones(len(rows)), offsets])
+    normal = _normal_equations(rows, weights, terms, n)
+    normal[:, [1, 2], [1, 2]] += PLANE_RIDGE * normal[:, :1, 0]
+    value = np.linalg.inv(normal)[:, 0]
+    entries: FloatArray = np.einsum("ek,ek->e", value[rows], terms) * weights
+    return entries
 
 
-def _curvatures(
-    rows: IndexArray,
-    columns: IndexArray,
-    offsets: FloatArray,
-    tick: Callable[[], None] = _nothing,
-) -> list[csr_array]:
-    """Return half the second derivatives along directions, of quadratics through each vertex."""
-    n = int(rows[-1]) + 1
-    second = np.empty((len(rows), 3))
-    for part, here, n_here in _blocks(rows, n):
-        dx, dy = offsets[part].T
-        is_own = rows[part] == columns[part]
-        weights = np.where(is_own, 0.0, 1.0 / np.maximum(np.hypot(dx, dy), 0.3))
-        terms = np.column_stack([dx, dy, dx**2, dx * dy, dy**2])
-        normal = _normal_equations(here, weights, terms, n_here)
-        size = np.maximum(np.trace(normal, axis1=1, axis2=2), 1e-12)[:, None]
-        # No ridge to speak of on the slope: a plane must have no curvature, however steep.
-        normal[:, [0, 1], [0, 1]] += PLANE_RIDGE * size
-        normal[:, [2, 3, 4], [2, 3, 4]] += CURVATURE_RIDGE * size
-        inverse = np.linalg.inv(normal)
-        for column, k in enumerate((2, 3, 4)):
-            second[part, column] = np.einsum("ek,ek->e", inverse[here, k], terms) * weights
-        tick()
-    found = []
+def _of_curvatures(
+    rows: IndexArray, is_own: NDArray[np.bool_], offsets: FloatArray, n: int
+) -> Iterator[FloatArray]:
+    """Yield half the second derivatives along directions, of quadratics through each vertex."""
+    dx, dy = offsets.T
+    weights = np.where(is_own, 0.0, 1.0 / np.maximum(np.hypot(dx, dy), 0.3))
+    terms = np.column_stack([dx, dy, dx**2, dx * dy, dy**2])
+    normal = _normal_equations(rows, weights, terms, n)
+    size = np.maximum(np.trace(normal, axis1=1, axis2=2), 1e-12)[:, None]
+    # No ridge to speak of on the slope: a plane must have no curvature, however steep.
+    normal[:, [0, 1], [0, 1]] += PLANE_RIDGE * size
+    normal[:, [2, 3, 4], [2, 3, 4]] += CURVATURE_RIDGE * size
+    inverse = np.linalg.inv(normal)
+    second = [np.einsum("ek,ek->e", inverse[rows, k], terms) * weights for k in (2, 3, 4)]
     for angle in np.pi / N_DIRECTIONS * np.arange(N_DIRECTIONS):
         east, north = np.cos(angle), np.sin(angle)
-        entries = east**2 * second[:, 0] + east * north * second[:, 1] + north**2 * second[:, 2]
-        entries = np.where(rows == columns, -np.bincount(rows, entries, n)[rows], entries)
-        found.append(csr_array((entries, (rows, columns)), shape=(n, n)))
-        tick()
-    return found
-
-
-def _blocks(rows: IndexArray, n: int) -> Iterator[tuple[slice, IndexArray, int]]:
-    """Yield entries of some vertices at once, their rows counted from the first, and how many."""
-    for first in range(0, n, FITTED_AT_ONCE):
-        stop = min(first + FITTED_AT_ONCE, n)
-        start, end = np.searchsorted(rows, [first, stop])
-        part = slice(int(start), int(end))
-        yield part, rows[part] - first, stop - first
+        entries = east**2 * second[0] + east * north * second[1] + north**2 * second[2]
+        yield np.where(is_own, -np.bincount(rows, entries, n)[rows], entries)
 
 
 def _normal_equations(

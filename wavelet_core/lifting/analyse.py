@@ -20,7 +20,7 @@ from ..partition.error_guided import DEFAULT_LEVELS, SurfaceRules, analyse_surfa
 from ..partition.orderings import LevelView, Partition
 from ..partition.registry import PARTITIONS, PartitionInput
 from ..partition.stopping import stop_record
-from ..progress import Progress, report
+from ..progress import Progress, report, watched
 from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
 from .pyramid import Pyramid, PyramidPart
@@ -30,6 +30,8 @@ from .step import Step, analyse_level
 
 #: Share of the vertices that one level is expected to keep, for the progress bar alone.
 EXPECTED_KEPT = 0.73
+#: Shares of the time of a level, for the progress bar alone: one-rings, and choosing what goes.
+OF_CONNECTIVITY, OF_SPLIT = 0.15, 0.65
 
 
 def analyse(
@@ -219,6 +221,7 @@ class _Analysis:
         self._integrals = np.ones(mesh.n_vertices) if integrals is None else integrals
         self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
+        self._share_of_step = self._told = 0.0
         self._recorder: Recorder | None = None
         if is_recorded and options.is_error_guided and integrals is None:
             self._recorder = Recorder(mesh, locked, options.update, options.as_dict())
@@ -340,18 +343,21 @@ class _Analysis:
         if max_odd <= 0:
             self._stopped_by = "target"
             return None
-        connectivity = build_connectivity(self._faces, n_vertices)
-        self._report()
+        with watched(lambda share: self._report_step(share * OF_CONNECTIVITY)):
+            connectivity = build_connectivity(self._faces, n_vertices)
+        self._report_step(OF_CONNECTIVITY)
         points, plan = self._scale.points(self._coefficients, self._horizontal)
         view = LevelView(self._faces, points, plan, connectivity, self._locked, self._in_plan)
-        split = self._partition.split(view, max_odd)
+        with watched(self._report_split):
+            split = self._partition.split(view, max_odd)
         if len(split.odd) == 0:
             self._stopped_by = "nothing_left"
             return None
-        self._report()
+        self._report_step(OF_CONNECTIVITY + OF_SPLIT)
         even = even_positions(split.odd, n_vertices)
         removal = Removal(points, plan, connectivity, *split, even, self._locked)
         filter_matrix = predict(self._options.prediction, removal)
+        self._report_step(1.0)
         coarse, details, integrals = analyse_level(
             self._coefficients,
             split.odd,
@@ -370,7 +376,7 @@ class _Analysis:
         self._locked = self._locked[even]
         if self._horizontal is not None:
             self._horizontal = self._horizontal[even]
-        self._report()
+        self._report_step(0.0)
         return Step(
             frozen(split.odd),
             frozen(split.target),
@@ -399,6 +405,13 @@ class _Analysis:
             return True
         return max_rms is not None and bool(np.sqrt(np.mean(errors**2)) > max_rms)
 
+    def _report_split(self, share: float) -> None:
+        self._report_step(OF_CONNECTIVITY + share * OF_SPLIT)
+
+    def _report_step(self, share: float) -> None:
+        self._share_of_step = share
+        self._report()
+
     def _report_size(self, n_vertices: int) -> None:
         self._report(n_vertices=n_vertices)
 
@@ -410,8 +423,10 @@ class _Analysis:
             expected = self._options.target_vertices or n_input * EXPECTED_KEPT ** min(
                 self._most_levels(), 40
             )
-            gone = n_input - (len(self._coefficients) if n_vertices is None else n_vertices)
+            n_now = len(self._coefficients) if n_vertices is None else n_vertices
+            gone = n_input - n_now + self._share_of_step * (1.0 - EXPECTED_KEPT) * n_now
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
+        self._told = fraction = max(fraction, self._told)
         report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
 
 

@@ -22,6 +22,10 @@ __all__ = [
 ]
 
 
+#: Faces that a message names.
+NAMED = 6
+
+
 class Connectivity(NamedTuple):
     """Stars and ordered one-rings of the vertices of one mesh.
 
@@ -97,11 +101,13 @@ def build_connectivity(faces: NDArray[np.int32], n_vertices: int) -> Connectivit
     if (bad_neighbour >= 0).any():
         vertex = int(np.argmax(bad_neighbour >= 0))
         neighbour = int(bad_neighbour[vertex])
-        users = [int(f) for f in star[star_indptr[vertex] : star_indptr[vertex + 1]]]
-        users = [face for face in users if neighbour in faces[face]]
+        users = np.unique(star[star_indptr[vertex] : star_indptr[vertex + 1]])
+        users = users[(faces[users] == neighbour).any(axis=1)]
+        more = f" and {len(users) - NAMED:,} more" if len(users) > NAMED else ""
         raise MeshError(
-            f"faces {users} share the edge {vertex}-{neighbour} in a way no surface does (more "
-            "than two of them, or of opposite orientation); remove or turn the offending face.",
+            f"faces {users[:NAMED].tolist()}{more} share the edge {vertex}-{neighbour} in a way no "
+            "surface does (more than two of them, or of opposite orientation); remove or turn the "
+            "offending face.",
             vertex,
         )
     return Connectivity(star_indptr, star, ring, ring_size, kind)

@@ -77,29 +77,31 @@ class RasterFormat(NamedTuple):
 #: TINs as mesh files.
 MESH_FORMATS = (
     MeshFormat(
-        ".ply", "PLY", "wavelet_gis.io.meshes:write_ply", "3D software", keeps_attributes=True
+        ".ply", "PLY", "wavelet_gis.io.mesh.meshes:write_ply", "3D software", keeps_attributes=True
     ),
-    MeshFormat(".obj", "OBJ", "wavelet_gis.io.meshes:write_obj", "3D software"),
+    MeshFormat(".obj", "OBJ", "wavelet_gis.io.mesh.meshes:write_obj", "3D software"),
     MeshFormat(
         ".2dm",
         "2DM",
-        "wavelet_gis.io.meshes:write_2dm",
+        "wavelet_gis.io.mesh.meshes:write_2dm",
         "QGIS (as a mesh layer), hydraulic models",
         has_prj=True,
     ),
     MeshFormat(
         ".nc",
         "UGRID",
-        "wavelet_gis.io.ugrid:write_ugrid",
+        "wavelet_gis.io.mesh.ugrid:write_ugrid",
         "QGIS (as a mesh layer), D-Flow FM, xugrid",
         keeps_attributes=True,
         takes_crs=True,
     ),
-    MeshFormat(".stl", "STL", "wavelet_gis.io.cad:write_stl", "3D printers", has_local_origin=True),
+    MeshFormat(
+        ".stl", "STL", "wavelet_gis.io.mesh.cad:write_stl", "3D printers", has_local_origin=True
+    ),
     MeshFormat(
         ".glb",
         "GLB",
-        "wavelet_gis.io.cad:write_glb",
+        "wavelet_gis.io.mesh.cad:write_glb",
         "3D viewers, web pages",
         package="trimesh",
         has_local_origin=True,
@@ -107,11 +109,11 @@ MESH_FORMATS = (
     MeshFormat(
         ".xml",
         "LandXML",
-        "wavelet_gis.io.cad:write_landxml",
+        "wavelet_gis.io.mesh.cad:write_landxml",
         "CAD, machine control",
         takes_crs=True,
     ),
-    MeshFormat(".dxf", "DXF", "wavelet_gis.io.cad:write_dxf", "CAD", package="ezdxf"),
+    MeshFormat(".dxf", "DXF", "wavelet_gis.io.mesh.cad:write_dxf", "CAD", package="ezdxf"),
 )
 
 MESH_SUFFIXES = tuple(row.suffix for row in MESH_FORMATS)

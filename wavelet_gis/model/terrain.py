@@ -63,6 +63,8 @@ class Terrain:
         Vertices that stay at every level: of breaklines and a clip polygon, and fixed points.
     profile : (n, 3) float64 or None
         Where the terrain is known along such lines, in the working frame.
+    segments : (n, 2, 2) float64 or None
+        The pieces of such lines in plan, from and to.
     """
 
     name: str
@@ -76,6 +78,7 @@ class Terrain:
     merged: NDArray[np.float64] | None = None
     locked: NDArray[np.bool_] | None = None
     profile: NDArray[np.float64] | None = None
+    segments: NDArray[np.float64] | None = None
 
     def points_for_errors(self) -> NDArray[np.float64]:
         """Return every input point of the surface in the working frame, merged ones too."""

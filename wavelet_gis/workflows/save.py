@@ -196,7 +196,7 @@ def write_tin(
 
         add_layers(path, tin_layers(geo, mesh, vertex_ids, name, categories), geo.system)
     else:
-        from wavelet_gis.io import meshes
+        from wavelet_gis.io.mesh import meshes
         from wavelet_gis.products.plane_mesh import plane_mesh
 
         placed = plane_mesh(geo, mesh, to_crs, categories)

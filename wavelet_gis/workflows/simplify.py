@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Unpack
 
 import numpy as np
@@ -17,10 +17,11 @@ from wavelet_core.progress import report
 from wavelet_core.refinement.finish import finished, finished_within
 from wavelet_core.refinement.refine import Round
 from wavelet_gis._memory import require_memory
+from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.points.origin import CloudOrigin
 from wavelet_gis.model.terrain import Terrain
-from wavelet_gis.notes import Note, collected
+from wavelet_gis.notes import Note, collected, warn
 from wavelet_gis.progress import Clock, part_of
 from wavelet_gis.workflows.analyse import Analysis
 from wavelet_gis.workflows.extract import Surface, SurfaceErrors, measured
@@ -35,6 +36,8 @@ from wavelet_gis.workflows.options import (
     warn_of_error_above,
     working_rules,
 )
+from wavelet_gis.workflows.solver.quality import MeshQuality, quality_of
+from wavelet_gis.workflows.solver.solver_mesh import SolverRules, solver_mesh
 from wavelet_gis.workflows.tolerance.by_place import MaxError, is_by_place, tolerances
 from wavelet_gis.workflows.tolerance.zone_errors import zone_errors
 
@@ -59,6 +62,10 @@ class Simplified(Surface):
         What the parts of the work took.
     along_lines : SurfaceErrors or None
         Along breaklines and clip polygon, where there are such lines.
+    limits : (n_input_vertices,) float64 or None
+        How far each input vertex may be off, where a tolerance was asked for.
+    quality : MeshQuality or None
+        Angles, edges and areas of a mesh for a solver.
     """
 
     terrain: Terrain | None = None
@@ -66,6 +73,8 @@ class Simplified(Surface):
     rounds: tuple[Round, ...] = ()
     seconds: dict[str, float] | None = None
     along_lines: SurfaceErrors | None = None
+    limits: NDArray[np.float64] | None = None
+    quality: MeshQuality | None = None
 
     @property
     def notes(self) -> tuple[Note, ...]:
@@ -133,6 +142,80 @@ class Simplified(Surface):
         errors = measured(mesh, points, scale, cover)
         return cloud.subset(origin.vertex_rows()[ids]), errors
 
+    def for_solver(
+        self,
+        *,
+        min_angle: float = 25.0,
+        longest_edge: float | None = None,
+        shortest_edge: float | None = None,
+        max_area: float | None = None,
+        progress: Progress | None = None,
+    ) -> Simplified:
+        """Return it as a mesh whose angles, edges and areas are within bounds; needs CGAL.
+
+        Parameters
+        ----------
+        min_angle : float
+            Degrees, at most 30. Angles that outline and lines have between them stay.
+        longest_edge, shortest_edge, max_area : float, optional
+            In the unit of x and y, or the metre for a geographic CRS. No two nodes of the TIN are
+            nearer than ``shortest_edge``; the triangulation itself may make an edge shorter where
+            an angle needs it.
+        progress : callable, optional
+            Called with a fraction in [0, 1]; the work stops when it returns False.
+
+        Returns
+        -------
+        Simplified
+            With all errors measured anew. Where a tolerance was asked for, points become nodes
+            until it holds again; what it cannot hold is warned of. New nodes lie on the terrain
+            and have the vertex id -1.
+
+        Raises
+        ------
+        OptionError
+            Bounds that no mesh can meet, or that take too many nodes.
+        MissingDependencyError
+            Without CGAL's bindings.
+        Cancelled
+            ``progress`` returned False.
+        """
+        assert self.terrain is not None
+        terrain, z_scale = self.terrain, self.terrain.frame.z_scale
+        made = solver_mesh(
+            self.mesh,
+            self.vertex_ids,
+            terrain.mesh,
+            SolverRules(min_angle, longest_edge, shortest_edge, max_area),
+            locked=terrain.locked,
+            segments=terrain.segments,
+            limits=None if self.limits is None else self.limits * z_scale,
+            progress=progress,
+        )
+        if made.n_above:
+            warn(
+                TerrainWarning,
+                "solver_mesh_beyond_tolerance",
+                "{name}: {n} input points are farther off than they may be, since nodes would be "
+                "too near; make {0} smaller",
+                "shortest_edge",
+                name=terrain.name,
+                n=made.n_above,
+            )
+        mesh, vertices = made.mesh, terrain.mesh.vertices
+        return replace(
+            self,
+            mesh=mesh,
+            vertex_ids=made.vertex_ids,
+            errors=measured(mesh, terrain.points_for_errors(), z_scale),
+            zones=zone_errors(mesh, made.vertex_ids, vertices, self.limits, z_scale)
+            if self.zones and self.limits is not None
+            else (),
+            is_fitted=False,
+            along_lines=measured_along_lines(terrain, mesh),
+            quality=quality_of(mesh),
+        )
+
     def figures(self) -> dict[str, Any]:
         """Return sizes and errors as JSON-able values."""
         pyramid = self.geo.pyramid
@@ -140,6 +223,7 @@ class Simplified(Surface):
             "n_input_vertices": pyramid.n_vertices(pyramid.n_levels),
             **Surface.figures(self),
             **figures_along_lines(self.along_lines),
+            **({} if self.quality is None else {"quality": self.quality._asdict()}),
             "n_levels": pyramid.n_levels,
             "stopped_by": None if pyramid.stop is None else pyramid.stop.reason,
             "rounds": [here._asdict() for here in self.rounds],
@@ -294,6 +378,9 @@ def simplify(
         ),
         seconds=clock.seconds(),
         along_lines=measured_along_lines(terrain, tin.mesh),
+        limits=np.full(terrain.mesh.n_vertices, largest)
+        if limits is None and max_error is not None
+        else limits,
     )
 
 

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from time import process_time
 
 import numpy as np
 import pytest
@@ -142,6 +143,41 @@ def test_a_broken_surface_is_told_in_the_same_words():
 
     ours, theirs = both(told)
     assert ours == theirs
+
+
+@pytest.mark.parametrize("is_closed", [True, False])
+def test_a_vertex_of_many_faces_has_its_ring_at_once(is_closed):
+    n = 100_000
+    around = np.random.default_rng(0).permutation(n).astype(np.int32) + 1
+    faces = np.column_stack([np.zeros(n, np.int32), around, np.roll(around, -1)])
+    faces = np.random.default_rng(1).permutation(faces if is_closed else faces[:-1])
+
+    def ring():
+        began = process_time()
+        connectivity = build_connectivity(faces, n + 1)
+        assert process_time() - began < 20  # comparing each with each took minutes
+        return connectivity.one_ring(0), connectivity.kind, connectivity.ring_size
+
+    loops, arrays = both(ring)
+    for ours, theirs in zip(loops, arrays, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+    start = int(np.flatnonzero(around == loops[0][0])[0])
+    np.testing.assert_array_equal(loops[0], np.roll(around, -start))
+
+
+def test_many_faces_at_one_place_are_told_at_once_and_briefly():
+    faces = np.zeros((100_000, 3), dtype=np.int32) + np.array([0, 1, 2], dtype=np.int32)
+
+    def told():
+        began = process_time()
+        with pytest.raises(ValueError, match="and 99,994 more share the edge") as error:
+            build_connectivity(faces, 3)
+        assert process_time() - began < 20  # a minute, and a line of half a megabyte
+        return str(error.value)
+
+    ours, theirs = both(told)
+    assert ours == theirs
+    assert len(ours) < 300
 
 
 def test_every_step_but_the_rare_ones_has_a_twin():

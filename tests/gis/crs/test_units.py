@@ -20,7 +20,7 @@ from wavelet_gis.crs.frame import (
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.crs.projection import plane_for, projected, scale_at
 from wavelet_gis.errors import CrsError, CrsWarning, OutputFileError, UnitWarning
-from wavelet_gis.io.meshes import MESH_SUFFIXES, write_mesh
+from wavelet_gis.io.mesh.meshes import MESH_SUFFIXES, write_mesh
 from wavelet_gis.notes import collected
 from wavelet_gis.products.plane_mesh import plane_mesh
 from wavelet_gis.workflows.open import open_input, open_terrain

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from wavelet_core import MissingDependencyError, TriangleMesh, synthetic
-from wavelet_gis.io.meshes import write_mesh
+from wavelet_gis.io.mesh.meshes import write_mesh
 
 FOOT_WKT = 'PROJCS["site",UNIT["US survey foot",0.3048006096012192]]'
 

@@ -13,7 +13,7 @@ from wavelet_core import synthetic
 from wavelet_gis.errors import CrsWarning, OutputFileError, TerrainWarning
 from wavelet_gis.io.atomic import check_output, new_file
 from wavelet_gis.io.geopackage import create_geopackage
-from wavelet_gis.io.meshes import write_mesh
+from wavelet_gis.io.mesh.meshes import write_mesh
 from wavelet_gis.io.raster import read_dem, write_dem
 from wavelet_gis.io.read_back import read_back
 

@@ -11,7 +11,7 @@ import pytest
 from wavelet_core import synthetic
 from wavelet_gis.io import formats
 from wavelet_gis.io.formats import MESH_FORMATS, MESH_SUFFIXES, mesh_format
-from wavelet_gis.io.meshes import write_mesh
+from wavelet_gis.io.mesh.meshes import write_mesh
 
 DOCS = Path(__file__).resolve().parent.parent.parent.parent / "docs"
 

@@ -5,9 +5,9 @@ import pytest
 
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import OutputFileError
-from wavelet_gis.io import meshes as meshfiles
 from wavelet_gis.io.formats import MESH_SUFFIXES
-from wavelet_gis.io.meshes import write_mesh
+from wavelet_gis.io.mesh import meshes as meshfiles
+from wavelet_gis.io.mesh.meshes import write_mesh
 
 
 @pytest.fixture

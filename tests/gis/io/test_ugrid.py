@@ -6,7 +6,7 @@ from gis.samples import hills, write_tif
 
 import wavelet_gis as wg
 from wavelet_core import TriangleMesh, synthetic
-from wavelet_gis.io.ugrid import write_ugrid
+from wavelet_gis.io.mesh.ugrid import write_ugrid
 
 
 @pytest.fixture

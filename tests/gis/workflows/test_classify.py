@@ -36,8 +36,6 @@ from wavelet_gis.workflows.learning.labels import (
 )
 from wavelet_gis.workflows.open import open_terrain
 
-pytest.importorskip("sklearn")
-
 
 @pytest.fixture(scope="module")
 def halves():
@@ -129,6 +127,7 @@ def test_heights_above_a_level_do_not_change_with_the_altitude(halves):
 
 
 def test_classes_are_learned_from_a_corner_and_hold_elsewhere(halves):
+    pytest.importorskip("sklearn")
     east = is_east(halves)
     plan = halves.pyramid.synthesise().vertices[:, :2]
     labels = np.where(plan[:, 1] > 40, east.astype(np.int64), NOT_KNOWN)
@@ -141,6 +140,7 @@ def test_classes_are_learned_from_a_corner_and_hold_elsewhere(halves):
 
 
 def test_validation_counts_every_labelled_vertex_once(halves):
+    pytest.importorskip("sklearn")
     labels = is_east(halves).astype(np.int64)
     labels[::7] = NOT_KNOWN
     plan = halves.pyramid.synthesise().vertices[:, :2]
@@ -172,20 +172,35 @@ def test_what_cannot_be_clustered_or_learned_is_refused(halves):
         cluster_vertices(signature, 0)
     with pytest.raises(OptionError, match="give one of kmeans, mixture"):
         cluster_vertices(signature, 2, "ward")
-    one = np.zeros(4800, dtype=np.int64)
-    with pytest.raises(OptionError, match="at least two"):
-        learn_classes(signature, one)
-    with pytest.raises(OptionError, match="cannot be validated"):
-        validate_classes(signature, one, np.zeros(4800, dtype=np.int64))
     bare = analyse(halves.pyramid.synthesise(), levels=0)
     with pytest.raises(OptionError, match="no levels"):
         energy_signature(bare)
 
 
+def test_what_has_one_class_is_not_learned_from(halves):
+    pytest.importorskip("sklearn")
+    signature, one = energy_signature(halves.pyramid), np.zeros(4800, dtype=np.int64)
+    with pytest.raises(OptionError, match="at least two"):
+        learn_classes(signature, one)
+    with pytest.raises(OptionError, match="cannot be validated"):
+        validate_classes(signature, one, np.zeros(4800, dtype=np.int64))
+
+
+@pytest.mark.parametrize("method", ["kmeans", "mixture"])
+def test_clusters_are_the_same_without_scikit_learn(halves, monkeypatch, method):
+    signature = energy_signature(halves.pyramid)
+    expected = cluster_vertices(signature, method=method)
+    monkeypatch.setitem(sys.modules, "sklearn", None)
+    found = cluster_vertices(signature, method=method)
+    np.testing.assert_array_equal(found.labels, expected.labels)
+    np.testing.assert_array_equal(found.confidence, expected.confidence)
+
+
 def test_without_scikit_learn_the_remedy_is_told(halves, monkeypatch):
     monkeypatch.setitem(sys.modules, "sklearn", None)
+    labels = is_east(halves).astype(np.int64)
     with pytest.raises(MissingDependencyError, match="pip install scikit-learn"):
-        cluster_vertices(energy_signature(halves.pyramid), 2)
+        learn_classes(energy_signature(halves.pyramid), labels)
 
 
 # -- labels in and out ---------------------------------------------------------------------------

@@ -86,6 +86,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="vertices are input points, height and all, also where the mean square counts",
     )
+    _add_solver_arguments(parser)
     add_surface_arguments(parser)
     add_input_arguments(parser)
     add_line_arguments(parser)
@@ -119,6 +120,10 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             progress=progress,
             **{**wavelet_options(arguments), "norm": arguments.norm},
         )
+    solver = _solver_options(arguments)
+    if solver:
+        with console.progress("meshing") as progress:
+            tin = tin.for_solver(progress=progress, **solver)
     _tell_rounds(tin, console)
     save(tin, arguments.output, overwrite=arguments.overwrite, **options)
     figures = {**tin.figures(), "seconds": round(perf_counter() - began, 3)}
@@ -128,10 +133,39 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         f"{figures['max_error']:.4g} ({terrain.vertical_unit}) at all input points; "
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
+    if tin.quality is not None:
+        quality = tin.quality
+        console.say(
+            f"angles {quality.smallest_angle:.3g} to {quality.largest_angle:.3g} degrees, edges "
+            f"{quality.shortest_edge:.4g} to {quality.longest_edge:.4g}, areas to "
+            f"{quality.largest_area:.4g}"
+        )
     zone_table(tin, console)
     if tin.along_lines is not None:
         console.say(line_about(tin.along_lines, terrain.vertical_unit))
     console.figures({"output": str(arguments.output), **figures})
+
+
+def _add_solver_arguments(parser: argparse.ArgumentParser) -> None:
+    group = parser.add_argument_group(
+        "mesh for a solver",
+        "any of these adds nodes until it holds (needs CGAL: pip install cgal); lengths in the "
+        "unit of x and y, or in metres for degrees",
+    )
+    group.add_argument(
+        "--min-angle", type=float, metavar="DEGREES", help="25 by default, 30 at most"
+    )
+    group.add_argument("--longest-edge", type=length, metavar="M", help="no edge is longer")
+    group.add_argument(
+        "--shortest-edge", type=length, metavar="M", help="no two vertices of the TIN are nearer"
+    )
+    group.add_argument("--max-area", type=length, metavar="M2", help="no triangle is larger")
+
+
+def _solver_options(arguments: argparse.Namespace) -> dict[str, float]:
+    names = ("min_angle", "longest_edge", "shortest_edge", "max_area")
+    given = {name: getattr(arguments, name) for name in names}
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def _tell_rounds(tin: Simplified, console: Console) -> None:

@@ -50,7 +50,6 @@ def few_threads(at_most: int) -> Iterator[None]:
     with other work to do, since its threads spin while they wait. Only libraries that are loaded
     already can be told.
     """
-    import sklearn.cluster
     import sklearn.ensemble  # noqa: F401
     from threadpoolctl import threadpool_limits
 
@@ -67,5 +66,5 @@ def require_sklearn() -> None:
         import sklearn  # noqa: F401
     except ImportError as error:
         raise MissingDependencyError(
-            "clusters and classes need scikit-learn; install it with 'pip install scikit-learn'."
+            "learning classes needs scikit-learn; install it with 'pip install scikit-learn'."
         ) from error

@@ -1,13 +1,10 @@
-"""Clusters of vertices by their scale signature. Arrays in, arrays out.
-
-Needs scikit-learn, which is imported when it is used.
-"""
+"""Clusters of vertices by their scale signature. Arrays in, arrays out."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +20,9 @@ from wavelet_gis.workflows.learning._scikit_learn import (
     FloatArray,
     IntArray,
     blocks_of,
-    few_threads,
-    require_sklearn,
     sample_of,
 )
+from wavelet_gis.workflows.learning.means import fit_means, fit_mixture
 
 __all__ = ["CLUSTERINGS", "Clustering", "Clusters", "cluster_summary", "cluster_vertices"]
 
@@ -89,8 +85,6 @@ def cluster_vertices(
     ------
     OptionError
         A number of clusters below 1 or above the number of vertices, or another method.
-    MissingDependencyError
-        Without scikit-learn.
 
     Notes
     -----
@@ -106,22 +100,18 @@ def cluster_vertices(
             f"count is {count}; give 1 to {min(n_vertices, 254)} clusters for {n_vertices} "
             "vertices."
         )
-    require_sklearn()
     columns = _standardised(signature.values)
     generator = np.random.default_rng(seed)
     sample = sample_of(n_vertices, MAX_FITTED, generator)
     fitted = columns[sample]
     explained: dict[int, float] = {}
-    with few_threads(1):  # k-means and mixtures sum in the order of their threads
-        if count is None:
-            explained = _explained(fitted, seed, part_of(progress, 0.0, 0.7))
-            count = _knee(explained)
-        report(progress, 0.7)
-        model = row.fit(fitted, count, seed)
-        parts = [
-            row.assign(model, columns[rows])
-            for rows in blocks_of(n_vertices, part_of(progress, 0.8, 1.0))
-        ]
+    if count is None:
+        explained = _explained(fitted, seed, part_of(progress, 0.0, 0.7))
+        count = _knee(explained)
+    model = row.fit(fitted, count, seed, part_of(progress, 0.7, 0.8))
+    parts = [
+        model.assign(columns[rows]) for rows in blocks_of(n_vertices, part_of(progress, 0.8, 1.0))
+    ]
     labels, confidence = (np.concatenate(part) for part in zip(*parts, strict=True))
     report(progress, 1.0)
     # Models number their clusters at will; energy gives an order that people can read.
@@ -187,8 +177,8 @@ def _explained(
     counts = [count for count in TRIED_COUNTS if count <= len(columns)]
     shares = {}
     for k, count in enumerate(counts):
-        report(progress, k / len(counts))
-        shares[count] = 1 - float(_fitted_kmeans(columns, count, seed).inertia_) / total
+        part = part_of(progress, k / len(counts), (k + 1) / len(counts))
+        shares[count] = 1 - fit_means(columns, count, seed, part).inertia / total
     return shares
 
 
@@ -202,32 +192,11 @@ def _knee(explained: dict[int, float]) -> int:
     return int(counts[np.argmax(shares - chord)])
 
 
-def _fitted_kmeans(columns: FloatArray, count: int, seed: int) -> Any:
-    from sklearn.cluster import KMeans
+class Assigns(Protocol):
+    """What a clustering comes to."""
 
-    return KMeans(count, n_init=4, random_state=seed).fit(columns)
-
-
-def _fitted_mixture(columns: FloatArray, count: int, seed: int) -> Any:
-    from sklearn.mixture import GaussianMixture
-
-    return GaussianMixture(count, reg_covar=1e-4, random_state=seed).fit(columns)
-
-
-def _most_likely(model: Any, columns: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the component of a mixture with the highest posterior, and that."""
-    posterior = model.predict_proba(columns)
-    return posterior.argmax(axis=1), posterior.max(axis=1)
-
-
-def _nearest_centre(model: Any, columns: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the nearest centre of k-means, and how clearly it is the nearest."""
-    distances = model.transform(columns)
-    labels = distances.argmin(axis=1)
-    if distances.shape[1] == 1:
-        return labels, np.ones(len(labels))
-    nearest = np.partition(distances, 1, axis=1)
-    return labels, 1 - nearest[:, 0] / np.maximum(nearest[:, 1], 1e-300)
+    def assign(self, columns: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Return the cluster of each row, and how clearly it belongs there."""
 
 
 class Clustering(NamedTuple):
@@ -235,24 +204,21 @@ class Clustering(NamedTuple):
 
     name : str, what `cluster_vertices` takes
     help : str, one line for lists
-    fit : callable, from columns, a number of clusters and a seed to a model
-    assign : callable, from a model and columns to the cluster of each row, and how clearly
+    fit : callable, from columns, a number of clusters, a seed and progress to a model
     """
 
     name: str
     help: str
-    fit: Callable[[FloatArray, int, int], Any]
-    assign: Callable[[Any, FloatArray], tuple[IntArray, FloatArray]]
+    fit: Callable[[FloatArray, int, int, Progress | None], Assigns]
 
 
 #: The methods of clustering, the default first.
 CLUSTERINGS = Table(
     "method",
     (
-        Clustering("kmeans", "the nearest of k means", _fitted_kmeans, _nearest_centre),
+        Clustering("kmeans", "the nearest of k means", fit_means),
         Clustering(
-            "mixture", "a mixture of Gaussians, which may differ in size and shape",
-            _fitted_mixture, _most_likely,
+            "mixture", "a mixture of Gaussians, which may differ in size and shape", fit_mixture
         ),
     ),
-)  # fmt: skip  # fmt: skip
+)

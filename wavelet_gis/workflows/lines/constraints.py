@@ -160,7 +160,14 @@ def constrained(
         merged=np.concatenate([others, tin.replaced]),
         locked=locked_vertices(tin),
         profile=profile,
+        segments=_segments([*placed.breaklines, *placed.outline]),
     )
+
+
+def _segments(lines: Sequence[FloatArray]) -> FloatArray:
+    """Return the pieces of lines in plan, ``(n, 2, 2)``."""
+    pieces = [np.stack([line[:-1, :2], line[1:, :2]], axis=1) for line in lines]
+    return np.concatenate([np.empty((0, 2, 2)), *pieces])
 
 
 def same_place(vertices: FloatArray) -> float:

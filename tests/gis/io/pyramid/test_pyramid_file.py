@@ -217,7 +217,7 @@ LIGHT = [
     "products.styles",
     "products.wkb",
     "products.rasterise",
-    "io.meshes",
+    "io.mesh.meshes",
     "io.atomic",
     "cli.console",
     "errors",

@@ -1,7 +1,7 @@
 """TINs as mesh files.
 
 PLY, OBJ, 2DM, STL and LandXML need numpy alone, so that QGIS needs nothing more; GLB and DXF are
-written by libraries, see `wavelet_gis.io.cad`. Which formats there are is the table
+written by libraries, see `wavelet_gis.io.mesh.cad`. Which formats there are is the table
 `wavelet_gis.io.formats.MESH_FORMATS`.
 """
 

@@ -1,0 +1,1 @@
+"""TINs as mesh files."""

@@ -1,0 +1,1 @@
+"""TINs as meshes that solvers take: angles, edges and areas within bounds."""
