@@ -191,7 +191,9 @@ def with_holes(rng):
     return np.where(hole, np.nan, z)
 
 
-@pytest.mark.parametrize("first", range(0, 200, 50))
+@pytest.mark.parametrize(
+    "first", [0, *(pytest.param(first, marks=pytest.mark.large) for first in (50, 100, 150))]
+)
 def test_no_step_is_empty_whatever_the_holes(first):
     """A step used to lose all its vertices to the link condition; the reader refuses such a one."""
     for seed in range(first, first + 50):
