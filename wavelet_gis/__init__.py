@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from wavelet_gis.report.page import report_page
     from wavelet_gis.tiles.globe.tileset import Tileset, terrain_tiles
+    from wavelet_gis.tiles.read import Region, extract_region, restored_raster
+    from wavelet_gis.tiles.tile import Tiled, tile_rasters
     from wavelet_gis.workflows.analyse import Analysis, analyse
     from wavelet_gis.workflows.details import Details, details
     from wavelet_gis.workflows.extract import Surface, extract
@@ -37,14 +39,17 @@ __all__ = [
     "Filtered",
     "Labelled",
     "Reconstruction",
+    "Region",
     "Simplified",
     "Surface",
+    "Tiled",
     "Tileset",
     "analyse",
     "classify",
     "cluster",
     "details",
     "extract",
+    "extract_region",
     "filter",
     "labels_from_las",
     "labels_from_layer",
@@ -52,9 +57,11 @@ __all__ = [
     "open",
     "reconstruct",
     "report_page",
+    "restored_raster",
     "save",
     "simplify",
     "terrain_tiles",
+    "tile_rasters",
 ]
 
 #: Where each public name is, and what it is called there.
@@ -66,6 +73,8 @@ _HOMES = {
     "Reconstruction": "workflows.reconstruct:Reconstruction",
     "Simplified": "workflows.simplify:Simplified",
     "Surface": "workflows.extract:Surface",
+    "Region": "tiles.read:Region",
+    "Tiled": "tiles.tile:Tiled",
     "Tileset": "tiles.globe.tileset:Tileset",
     "analyse": "workflows.analyse:analyse",
     "classify": "workflows.learning.cluster:classify",
@@ -81,7 +90,10 @@ _HOMES = {
     "report_page": "report.page:report_page",
     "save": "workflows.save:save",
     "simplify": "workflows.simplify:simplify",
+    "extract_region": "tiles.read:extract_region",
+    "restored_raster": "tiles.read:restored_raster",
     "terrain_tiles": "tiles.globe.tileset:terrain_tiles",
+    "tile_rasters": "tiles.tile:tile_rasters",
 }
 
 

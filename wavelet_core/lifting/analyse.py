@@ -23,7 +23,7 @@ from ..partition.stopping import stop_record
 from ..progress import Progress, report, watched
 from .options import AnalysisOptions, resolve_options
 from .prediction import Removal, predict
-from .pyramid import Pyramid
+from .pyramid import Pyramid, PyramidPart
 from .recorded import Recorder
 from .signal import SIGNALS, Normalisation
 from .step import Step, analyse_level
@@ -55,6 +55,7 @@ def analyse(
     norm: str | None = None,
     removal_fraction: float | None = None,
     outline_tolerance: float = 0.0,
+    integrals: ArrayLike | None = None,
     record: bool = False,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
@@ -117,6 +118,10 @@ def analyse(
         may lie, in the unit of x and y, with ``partition="surface"`` and its own filters. With 0 an
         outline vertex goes only where the outline runs straight. Input vertices that a level does
         not cover any more count with their error at the nearest place of its outline.
+    integrals : array_like, shape (n_vertices,), optional
+        Of the scaling functions at the vertices, where the mesh is itself a level of a pyramid, or
+        of several side by side; by default 1, as of an input. The pyramid keeps them
+        (`Pyramid.part`), so that their sum with the coefficients stays what it was.
     record : bool
         Keep what tells the pyramid in a file (:attr:`Pyramid.told`), which takes half as much time
         again and is otherwise worked out by whoever writes the file. There is none but for
@@ -177,7 +182,14 @@ def analyse(
     )
     announce_engine(mesh.n_vertices)
     with fitting_engine(mesh.n_vertices):
-        return _Analysis(mesh, options, _locked_mask(locked, mesh), progress, record).run()
+        return _Analysis(
+            mesh,
+            options,
+            _locked_mask(locked, mesh),
+            progress,
+            _begun_integrals(integrals, mesh),
+            record,
+        ).run()
 
 
 class _Analysis:
@@ -189,6 +201,7 @@ class _Analysis:
         options: AnalysisOptions,
         locked: NDArray[np.bool_],
         progress: Progress | None,
+        integrals: FloatArray | None,
         is_recorded: bool,
     ) -> None:
         self._mesh = mesh
@@ -204,12 +217,13 @@ class _Analysis:
         self._coefficients = np.ascontiguousarray(np.hstack(columns))
         self._horizontal = mesh.vertices[:, :2] if self._in_plan else None
         self._locked = locked
-        self._integrals = np.ones(mesh.n_vertices)
+        self._begun = integrals
+        self._integrals = np.ones(mesh.n_vertices) if integrals is None else integrals
         self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
         self._share_of_step = self._told = 0.0
         self._recorder: Recorder | None = None
-        if is_recorded and options.is_error_guided:
+        if is_recorded and options.is_error_guided and integrals is None:
             self._recorder = Recorder(mesh, locked, options.update, options.as_dict())
 
     def run(self) -> Pyramid:
@@ -231,6 +245,9 @@ class _Analysis:
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
             measured=self._figures,
+            part=None
+            if self._begun is None
+            else PyramidPart(np.arange(self._mesh.n_vertices, dtype=np.int32), frozen(self._begun)),
         )
         stop = stop_record(
             self._stopped_by,
@@ -281,17 +298,23 @@ class _Analysis:
         result = analyse_surface(
             self._mesh.vertices[:, :2],
             self._coefficients,
-            self._faces,
+            self._release_faces(),
             self._locked,
             self._scale.height_weights(),
             rules,
             self._report_size,
+            self._begun,
             self._recorder,
         )
         self._coefficients = result.coarse
         self._stopped_by = result.stopped_by
         self._figures = self._in_input_units(result.figures)
         return [Step(*step) for step in result.steps]
+
+    def _release_faces(self) -> NDArray[np.int32]:
+        """Return the faces and keep them no longer: they take a twentieth of the memory."""
+        faces, self._faces = self._faces, np.empty((0, 3), dtype=np.int32)
+        return faces
 
     def _in_input_units(self, figures: list[LevelFigures]) -> tuple[LevelFigures, ...] | None:
         """Return the figures of the levels, the coarsest first; None where they are not those.
@@ -425,6 +448,20 @@ def _locked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.boo
             n=mesh.n_vertices,
         )
     return mask
+
+
+def _begun_integrals(integrals: ArrayLike | None, mesh: TriangleMesh) -> FloatArray | None:
+    if integrals is None:
+        return None
+    values = np.array(integrals, dtype=np.float64)
+    if values.shape != (mesh.n_vertices,) or not np.isfinite(values).all():
+        raise OptionError(
+            "{0} has shape {shape}; give one finite number for each of {n} vertices.",
+            "integrals",
+            shape=values.shape,
+            n=mesh.n_vertices,
+        )
+    return values
 
 
 def _require_upright(mesh: TriangleMesh) -> None:

@@ -180,6 +180,10 @@ class SurfaceLevel:
         )
         self._with_update = with_update
 
+    def begin_with(self, integrals: FloatArray) -> None:
+        """Give the vertices of the input other integrals than 1."""
+        self._vertices = self._vertices._replace(integrals=integrals.copy())
+
     @property
     def ids(self) -> NDArray[np.int32]:
         """Ids, in the input, of the vertices of the level."""

@@ -148,6 +148,7 @@ def analyse_surface(
     weights: FloatArray,
     rules: SurfaceRules,
     report: Callable[[int], None],
+    integrals: FloatArray | None = None,
     recorder: Recorder | None = None,
 ) -> SurfaceAnalysis:
     """Return the coarse coefficients and the steps of a surface-guided analysis.
@@ -166,12 +167,17 @@ def analyse_surface(
     rules : SurfaceRules
     report : callable
         Called with the present number of vertices between the passes; may raise to stop.
+    integrals : ndarray, shape (n_vertices,), optional
+        Of the scaling functions of the input; by default 1.
     recorder : Recorder, optional
         Is told every step.
     """
     level = SurfaceLevel(
         plan, columns * weights, faces, locked, rules.with_update, rules.outline_tolerance
     )
+    del faces  # which nobody else may keep
+    if integrals is not None:
+        level.begin_with(integrals)
     steps: list[CollapseStep] = []
     figures = [level.figures()]
     n_flat = 0

@@ -1,8 +1,9 @@
 """The command ``terrain-wavelets``: argument parsing and messages only.
 
 Each command is a module of `wavelet_gis.cli.commands` with ``ORDER`` (its place in the list of
-commands), ``HELP``, ``add_arguments(parser)`` and ``run(arguments, console)``. A module that is put
-there is a command; it imports what it needs when it runs, so that ``--help`` comes at once.
+commands), ``HELP``, ``add_arguments(parser)`` and ``run(arguments, console)``; ``GOES_ON`` where a
+second start goes on from what an interrupted one has made. A module that is put there is a command;
+it imports what it needs when it runs, so that ``--help`` comes at once.
 """
 
 from __future__ import annotations
@@ -116,11 +117,15 @@ def _stopped(stop: BaseException, chosen: argparse.Namespace, before: _State) ->
     """Say that a signal came; one that comes when the output is in place has come too late."""
     is_interrupt = isinstance(stop, KeyboardInterrupt)
     word = "interrupted" if is_interrupt else "terminated"
+    ended = interrupts.INTERRUPTED if is_interrupt else interrupts.TERMINATED
+    if chosen.goes_on:
+        _complain(f"{word}; what was made is kept, and the same command goes on from there")
+        return ended
     if _state(chosen) != before:
         print(f"{PROGRAM}: {word} after {chosen.output} was written", file=sys.stderr)
         return 0
     _complain(f"{word}; nothing was written")
-    return interrupts.INTERRUPTED if is_interrupt else interrupts.TERMINATED
+    return ended
 
 
 #: Which file is at the output's path: none, or its inode and time of change.
@@ -172,7 +177,7 @@ def _add_command(
     module.add_arguments(parser)
     parser.add_argument("--quiet", action="store_true", help="say nothing but errors")
     parser.add_argument("--json", action="store_true", help="print figures as JSON")
-    parser.set_defaults(run=module.run)
+    parser.set_defaults(run=module.run, goes_on=getattr(module, "GOES_ON", False))
     return parser
 
 

@@ -1,4 +1,4 @@
-"""Outputs that appear whole, read back and on the disk, or not at all."""
+"""Outputs that appear whole, or not at all: files, read back and on the disk, and folders."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from wavelet_gis.io.read_back import Check, checks_of, require_sound_file
 from wavelet_gis.io.scratch import scratch_folder, sweep
 from wavelet_gis.notes import warn
 
-__all__ = ["check_output", "new_file"]
+__all__ = ["check_folder", "check_output", "new_file", "new_folder"]
 
 #: What the file is called in the scratch folder: no library stumbles over it.
 _SCRATCH_STEM = "out"
@@ -141,6 +141,69 @@ def new_file(path: str | os.PathLike[str], *, overwrite: bool = False) -> Iterat
             _verify(scratch, target, checks)
         _settle(scratch, made, place, overwrite=overwrite)
     warn_of_foreign_files(place)
+
+
+def check_folder(path: str | os.PathLike[str], marker: str, *, overwrite: bool = False) -> Path:
+    """Return the path of a folder that is to be made, once it is known that it may be.
+
+    Parameters
+    ----------
+    path : path
+        Where the folder is wanted.
+    marker : str
+        A file in every such folder. Only folders with it are replaced.
+    overwrite : bool
+        Whether one that exists may be replaced.
+
+    Raises
+    ------
+    OutputFileError
+        Something is there that may not be replaced, or the folder around it is missing or cannot
+        be written.
+    """
+    target = Path(path)
+    if os.path.lexists(target):
+        is_empty = target.is_dir() and not any(target.iterdir())
+        if not is_empty and not (target.is_dir() and (target / marker).is_file()):
+            raise OutputFileError(
+                f"{target}: this exists and is no folder with a {marker}; give another name."
+            )
+        if not is_empty and not overwrite:
+            raise OutputFileError(
+                "{path}: this folder exists; give another name, or {0} to replace it.",
+                "overwrite",
+                path=target,
+            )
+    parent = target.absolute().parent
+    if not parent.is_dir():
+        raise OutputFileError(f"{parent}: there is no such folder; create it first.")
+    with scratch_folder(target.absolute()):
+        pass
+    return target
+
+
+@contextmanager
+def new_folder(
+    path: str | os.PathLike[str], marker: str, *, overwrite: bool = False
+) -> Iterator[Path]:
+    """Yield an empty folder beside `path`; moved to `path` when the block ends without an error.
+
+    Parameters
+    ----------
+    path, marker, overwrite
+        See `check_folder`.
+    """
+    target = check_folder(path, marker, overwrite=overwrite).absolute()
+    sweep(target.parent)
+    with scratch_folder(target) as scratch:
+        folder = scratch / "out"
+        folder.mkdir()
+        yield folder
+        if not (folder / marker).is_file():
+            raise OutputFileError(f"{target}: no {marker} was written; please report this.")
+        if target.is_dir():
+            os.replace(target, scratch / "replaced")
+        os.replace(folder, target)
 
 
 def _exists(target: Path) -> bool:

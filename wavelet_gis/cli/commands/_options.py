@@ -24,8 +24,11 @@ __all__ = [
     "add_inputs_argument",
     "add_line_arguments",
     "add_overwrite_argument",
+    "add_place_arguments",
+    "add_raster_arguments",
     "add_surface_arguments",
     "add_wavelet_arguments",
+    "box",
     "input_files",
     "length",
     "line_options",
@@ -82,9 +85,8 @@ _READING = (
 )
 
 
-def add_input_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what tells how a DEM or a LAS file is read."""
-    group = parser.add_argument_group("input")
+def add_raster_arguments(group: argparse._ArgumentGroup) -> None:
+    """Add what tells how a raster is read."""
     group.add_argument("--band", type=int, metavar="N", help="band of a raster, from 1")
     group.add_argument(
         "--nodata",
@@ -98,6 +100,23 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="refuse a raster that reads from the network, as a VRT may",
     )
+
+
+def add_place_arguments(group: argparse._ArgumentGroup) -> None:
+    """Add what tells where an input is, instead of its file."""
+    group.add_argument("--crs", metavar="CRS", help="instead of the file's, such as EPSG:2154")
+    group.add_argument(
+        "--vertical-unit",
+        metavar="UNIT",
+        help="of z: metre, foot or us_survey_foot; by default what the CRS says, else metre for "
+        "degrees and kilometres and the unit of x and y for any other",
+    )
+
+
+def add_input_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what tells how a DEM or a LAS file is read."""
+    group = parser.add_argument_group("input")
+    add_raster_arguments(group)
     group.add_argument(
         "--attributes",
         type=names,
@@ -155,13 +174,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--z-field", metavar="NAME", help="field with the elevation where its points have no z"
     )
-    group.add_argument("--crs", metavar="CRS", help="instead of the file's, such as EPSG:2154")
-    group.add_argument(
-        "--vertical-unit",
-        metavar="UNIT",
-        help="of z: metre, foot or us_survey_foot; by default what the CRS says, else metre for "
-        "degrees and kilometres and the unit of x and y for any other",
-    )
+    add_place_arguments(group)
 
 
 def add_line_arguments(parser: argparse.ArgumentParser) -> None:
@@ -422,6 +435,15 @@ def length(text: str) -> float:
     if not 0 < value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a length above 0")
     return value
+
+
+def box(text: str) -> tuple[float, float, float, float]:
+    """Return smallest x and y, largest x and y, from the command line."""
+    try:
+        x_min, y_min, x_max, y_max = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not four numbers such as 0,0,9,9") from None
+    return x_min, y_min, x_max, y_max
 
 
 def names(text: str) -> tuple[str, ...]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from wavelet_gis.cli.commands._options import (
     add_max_error_argument,
     add_overwrite_argument,
     add_surface_arguments,
     add_zone_arguments,
+    box,
     surface_formats,
     surface_options,
     surface_suffixes,
@@ -16,6 +18,9 @@ from wavelet_gis.cli.commands._options import (
     zone_table,
 )
 from wavelet_gis.cli.console import Console
+
+if TYPE_CHECKING:
+    from wavelet_gis.workflows.extract import Surface
 
 ORDER = 30
 HELP = (
@@ -25,7 +30,7 @@ HELP = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("file", help="a pyramid file")
+    parser.add_argument("file", help="a pyramid file, or the index.gpkg of a tile set")
     parser.add_argument("output", help=f"ending in {surface_suffixes()}")
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--level", type=int, metavar="K", help="0, the default, is the coarsest")
@@ -34,6 +39,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_max_error_argument(which, "the least with no input vertex further off, vertically")
     add_zone_arguments(parser)
+    parser.add_argument(
+        "--bbox",
+        type=box,
+        metavar="X,Y,X,Y",
+        help="of a tile set: smallest x and y, largest x and y, in the coordinates of the input; "
+        "only the tiles there are read",
+    )
     parser.add_argument(
         "--refine",
         type=int,
@@ -55,8 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    from wavelet_gis.workflows.extract import extract
-    from wavelet_gis.workflows.open import load
+    from wavelet_gis.tiles.index import is_index
     from wavelet_gis.workflows.save import check_surface_output, save
 
     options = surface_options(arguments)
@@ -66,17 +77,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         inputs=(arguments.file, *tolerance_files(arguments)),
         **options,
     )
-    rules = (arguments.vertices, arguments.max_error, arguments.zones)
-    between = any(rule is not None for rule in rules)
-    surface = extract(
-        load(arguments.file, level=None if between else arguments.level or 0),
-        level=arguments.level,
-        vertices=arguments.vertices,
-        max_error=arguments.max_error,
-        zones=arguments.zones,
-        zone_field=arguments.zone_field,
-        refine=arguments.refine,
-    )
+    surface = _of_tiles(arguments) if is_index(arguments.file) else _of_pyramid(arguments)
     cells = save(
         surface,
         arguments.output,
@@ -98,3 +99,33 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     )
     zone_table(surface, console)
     console.figures({"output": str(arguments.output), **figures})
+
+
+def _of_pyramid(arguments: argparse.Namespace) -> Surface:
+    from wavelet_core.errors import OptionError
+    from wavelet_gis.workflows.extract import extract
+    from wavelet_gis.workflows.open import load
+
+    if arguments.bbox is not None:
+        raise OptionError("{0} is for tile sets, and this is one pyramid; leave it out.", "bbox")
+    rules = (arguments.vertices, arguments.max_error, arguments.zones)
+    between = any(rule is not None for rule in rules)
+    return extract(
+        load(arguments.file, level=None if between else arguments.level or 0),
+        level=arguments.level,
+        vertices=arguments.vertices,
+        max_error=arguments.max_error,
+        zones=arguments.zones,
+        zone_field=arguments.zone_field,
+        refine=arguments.refine,
+    )
+
+
+def _of_tiles(arguments: argparse.Namespace) -> Surface:
+    from wavelet_core.errors import OptionError
+    from wavelet_gis.tiles.read import extract_region
+
+    for name in ("vertices", "max_error", "zones", "zone_field", "refine"):
+        if getattr(arguments, name):
+            raise OptionError("{0} is for one pyramid, and this is a tile set; leave it out.", name)
+    return extract_region(arguments.file, level=arguments.level or 0, bbox=arguments.bbox).surface

@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    from wavelet_gis.io.folders import check_folder
+    from wavelet_gis.io.atomic import check_folder
     from wavelet_gis.tiles.globe.tileset import LAYER, terrain_tiles
     from wavelet_gis.workflows.open import open_pyramid_or_input
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 import wavelet_core
 from wavelet_core import Progress, Pyramid, PyramidError, Step, TriangleMesh
+from wavelet_core.lifting.pyramid import PyramidPart
 from wavelet_core.lifting.recorded import is_error_guided, pyramid_of, record_of
 from wavelet_core.lifting.recorded import part_of as part_of_record
 from wavelet_core.lifting.signal import SIGNALS
@@ -95,6 +97,8 @@ def pyramid_to_parts(
         has_cells = _is_plan_of_cells(pyramid, geo.origin, geo.frame)
         if has_cells:
             del arrays["horizontal"]
+        if pyramid.part is not None:
+            arrays["integrals"] = pyramid.part.integrals
     else:
         told, record_arrays = record_to_parts(record)
         arrays.update(record_arrays)
@@ -121,6 +125,7 @@ def pyramid_to_parts(
             "signal": pyramid.signal,
             "update": pyramid.update,
             "has_locked": pyramid.locked is not None,
+            **({"has_integrals": True} if pyramid.part is not None else {}),
             "parameters": dict(pyramid.parameters),
             "stop": None if pyramid.stop is None else pyramid.stop._asdict(),
         },
@@ -377,6 +382,12 @@ def _from_lists(
     )
     n_vertices = pyramid.n_vertices(pyramid.n_levels)
     build_connectivity(pyramid.faces.astype(np.int32), n_vertices)  # refuses what is no manifold
+    if "has_integrals" in described:
+        integrals = arrays.get("integrals", "<f8", 1)
+        if len(integrals) != n_vertices or not np.isfinite(integrals).all():
+            raise PyramidError("integrals for another number of vertices; the file is damaged.")
+        ids = np.arange(n_vertices, dtype=np.int32)
+        pyramid = replace(pyramid, part=PyramidPart(ids, integrals))
     return pyramid
 
 

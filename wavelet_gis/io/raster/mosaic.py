@@ -14,7 +14,7 @@ from wavelet_gis.io.raster.memory import require_memory
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.notes import note, warn
 
-__all__ = ["mosaic"]
+__all__ = ["first_cell", "mosaic"]
 
 #: How far cells of two files may be apart that are to be the same, in parts of a cell.
 _SAME_CELL = 1e-3
@@ -42,7 +42,10 @@ def mosaic(names: Sequence[str], dems: Sequence[Dem]) -> Dem:
     for name, dem in zip(names[1:], dems[1:], strict=True):
         _require_alike(names[0], first, name, dem)
     corners = np.array(
-        [_corner(names[0], first, name, dem) for name, dem in zip(names, dems, strict=True)]
+        [
+            first_cell(names[0], first.geometry, name, dem.geometry)
+            for name, dem in zip(names, dems, strict=True)
+        ]
     )
     shapes = np.array([dem.geometry.shape for dem in dems])
     low, high = corners.min(axis=0), (corners + shapes).max(axis=0)
@@ -112,11 +115,27 @@ def _require_alike(name: str, first: Dem, other_name: str, other: Dem) -> None:
             )
 
 
-def _corner(name: str, first: Dem, other_name: str, other: Dem) -> tuple[int, int]:
-    """Return row and column, in the grid of the first file, of another's first cell."""
-    shape = other.geometry.shape
-    columns, rows = np.array([0.0, shape[1] - 1.0, 0.0]), np.array([0.0, 0.0, shape[0] - 1.0])
-    at_columns, at_rows = first.geometry.cells(*other.geometry.centres(columns, rows))
+def first_cell(
+    name: str, grid: GridGeometry, other_name: str, other: GridGeometry
+) -> tuple[int, int]:
+    """Return row and column, in one grid, of the first cell of a raster of the same cells.
+
+    Parameters
+    ----------
+    name, other_name : str
+        For the message.
+    grid, other : GridGeometry
+
+    Raises
+    ------
+    InputFileError
+        The cells are others.
+    """
+    columns, rows = (
+        np.array([0.0, other.shape[1] - 1.0, 0.0]),
+        np.array([0.0, 0.0, other.shape[0] - 1.0]),
+    )
+    at_columns, at_rows = grid.cells(*other.centres(columns, rows))
     off = np.abs(
         [at_columns - np.rint(at_columns[0]) - columns, at_rows - np.rint(at_rows[0]) - rows]
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,21 @@ from wavelet_gis.notes import warn
 if TYPE_CHECKING:
     from rasterio.io import DatasetReader
 
-__all__ = ["NO_TAG", "read_dem"]
+__all__ = ["NO_TAG", "CellWindow", "read_dem"]
+
+
+class CellWindow(NamedTuple):
+    """Some cells of a raster.
+
+    row, column : int, of the first
+    height, width : int, in cells
+    """
+
+    row: int
+    column: int
+    height: int
+    width: int
+
 
 #: Creation options of GeoTIFF that are taken over from the file that was read.
 _GTIFF_OPTIONS = ("compress", "predictor", "tiled", "blockxsize", "blockysize")
@@ -35,6 +49,7 @@ def read_dem(
     band: int | None = None,
     nodata: float | str | None = None,
     offline: bool = False,
+    window: CellWindow | None = None,
 ) -> tuple[Dem, Georeference]:
     """Return one band of a raster, and what the file tells of its coordinates.
 
@@ -48,6 +63,8 @@ def read_dem(
         The stored number that stands for nothing, instead of the file's tag.
     offline : bool
         Whether a raster that refers to the network is refused.
+    window : CellWindow, optional
+        Only these cells.
 
     Raises
     ------
@@ -95,7 +112,7 @@ def read_dem(
         with warnings.catch_warnings(), silent_libraries() as said, rasterio.Env(**settings):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(gdal_path(path)) as dataset:
-                dem, place = _read_band(dataset, path, band, nodata)
+                dem, place = _read_band(dataset, path, band, nodata, window)
     except (RasterioError, CPLE_BaseError, UnicodeDecodeError) as error:
         if remote is not None:
             raise InputFileError(
@@ -131,6 +148,7 @@ def _read_band(
     path: str | os.PathLike[str],
     band: int | None,
     nodata: float | str | None,
+    cells: CellWindow | None,
 ) -> tuple[Dem, Georeference]:
     if dataset.count == 0:
         names = dataset.subdatasets
@@ -156,13 +174,13 @@ def _read_band(
         raise InputFileError(
             f"{path}: band {index} holds {dtype} values; elevations must be real numbers."
         )
-    n_cells = dataset.height * dataset.width
-    require_memory(
-        n_cells * BYTES_PER_CELL, os.fspath(path), f"{dataset.height} x {dataset.width} cells"
-    )
-    values = dataset.read(index)
-    transform = tuple(dataset.transform)[:6]
-    valid = _valid_cells(dataset, index, values, nodata, path)
+    row, column, height, width = cells or (0, 0, dataset.height, dataset.width)
+    require_memory(height * width * BYTES_PER_CELL, os.fspath(path), f"{height} x {width} cells")
+    window = ((row, row + height), (column, column + width))
+    values = dataset.read(index, window=window)
+    a, b, c, d, e, f = tuple(dataset.transform)[:6]
+    transform = (a, b, c + a * column + b * row, d, e, f + d * column + e * row)
+    valid = _valid_cells(dataset, index, values, nodata, path, window)
     n_valid = int(np.count_nonzero(valid))
     require_memory(n_valid * BYTES_PER_VERTEX, os.fspath(path), f"{n_valid:,} cells with data")
     dem = Dem(
@@ -184,13 +202,14 @@ def _valid_cells(
     values: NDArray[Any],
     nodata: float | str | None,
     path: str | os.PathLike[str],
+    window: tuple[tuple[int, int], tuple[int, int]],
 ) -> NDArray[np.bool_]:
     """Return which cells are elevations: nodata is compared with the numbers as stored."""
     from rasterio.enums import MaskFlags
 
     is_tag_alone = MaskFlags.nodata in dataset.mask_flag_enums[index - 1]
     if nodata is None or not is_tag_alone:
-        valid: NDArray[np.bool_] = dataset.read_masks(index) != 0
+        valid: NDArray[np.bool_] = dataset.read_masks(index, window=window) != 0
     else:
         valid = np.ones(values.shape, dtype=bool)
     if values.dtype.kind == "f":

@@ -16,7 +16,7 @@ from wavelet_core.progress import report
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.crs.projection import projected
 from wavelet_gis.errors import CrsError, TerrainWarning
-from wavelet_gis.io.folders import new_folder
+from wavelet_gis.io.atomic import new_folder
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import warn

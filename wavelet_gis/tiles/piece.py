@@ -1,0 +1,325 @@
+"""The work on one piece, by itself in whatever process: a tile, or a group of four.
+
+A tile is an ordinary pyramid of its cells, with the cells on the lines that it shares with its
+neighbours locked, so that both keep them at every level. A group begins with the coarsest levels of
+its parts, put together vertex by vertex; the lines between them are free now, those around the
+group are locked. The integrals of the scaling functions go on from the parts, so that their sum
+with the coefficients is that of the input at every level of the whole.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import PyramidError, TriangleMesh, WaveletError
+from wavelet_core import analyse as core_analyse
+from wavelet_gis.errors import InputFileError
+from wavelet_gis.io.atomic import new_file
+from wavelet_gis.io.read_back import write_text
+from wavelet_gis.model.dem import Dem, GridGeometry, RasterOrigin, dem_mesh
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.model.terrain import Terrain
+from wavelet_gis.notes import collected
+from wavelet_gis.tiles.plan import Piece, TilePlan
+from wavelet_gis.workflows.analyse import analyse
+from wavelet_gis.workflows.save import write_pyramid_file
+
+__all__ = ["PIECES", "Joined", "cells_of", "join", "make_piece", "read_record", "sha256_of"]
+
+#: Folder of the files of the pieces.
+PIECES = "pieces"
+
+#: What GeoPackages are dated by, where it is set.
+_EPOCH = "SOURCE_DATE_EPOCH"
+
+_BYTES_AT_ONCE = 1 << 22
+
+
+class Joined(NamedTuple):
+    """Meshes of several pieces as one.
+
+    vertices : (n, 3) float64, in the working frame
+    faces : (m, 3) int64
+    cells : (n,) int64, of the vertices in the grid of all, row by row; ascending
+    integrals : (n,) float64
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    cells: NDArray[np.int64]
+    integrals: NDArray[np.float64]
+
+
+def make_piece(folder: str, plan_text: str, piece: Piece, inputs: dict[str, str]) -> dict[str, Any]:
+    """Make the pyramid of a piece and its record; return the record.
+
+    Parameters
+    ----------
+    folder : str
+        Of the tile set.
+    plan_text : str
+        See `TilePlan.to_json`.
+    piece : Piece
+    inputs : dict of str to str
+        What it is made from, and a checksum or the like of each, for the record.
+
+    Notes
+    -----
+    Both files are written aside and renamed, the record last: whoever finds it finds the whole.
+    What is wrong with a piece is told in the record, which then names no file.
+    """
+    plan = TilePlan.from_json(plan_text, folder)
+    began = perf_counter()
+    record: dict[str, Any] = {
+        "stage": piece.stage,
+        "row": piece.row,
+        "column": piece.column,
+        "plan": plan.checksum,
+        "inputs": inputs,
+    }
+    place = Path(folder) / PIECES / f"{piece.name}.gpkg"
+    place.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with collected(), _dated(plan):
+            geo = _tile(plan, piece) if piece.stage == 0 else _group(folder, plan, piece, inputs)
+            if geo is None:
+                record |= {"status": "empty"}
+            else:
+                with new_file(place, overwrite=True) as scratch:
+                    write_pyramid_file(scratch, geo, "none")
+                record |= {"status": "whole", **_figures(geo), "sha256": sha256_of(place)}
+                record["n_bytes"] = place.stat().st_size
+    except WaveletError as error:
+        record |= {"status": "failed", "reason": " ".join(str(error).split())}
+    record["seconds"] = round(perf_counter() - began, 3)
+    with new_file(place.with_suffix(".json"), overwrite=True) as scratch:
+        write_text(scratch, json.dumps(record, sort_keys=True))
+    return record
+
+
+@contextmanager
+def _dated(plan: TilePlan) -> Iterator[None]:
+    """Date files by the newest input, so that a piece made again has the same bytes."""
+    if _EPOCH in os.environ:
+        yield
+        return
+    os.environ[_EPOCH] = str(max(file.changed for file in plan.files) // 10**9)
+    try:
+        yield
+    finally:
+        del os.environ[_EPOCH]
+
+
+def read_record(folder: str | os.PathLike[str], piece: Piece) -> dict[str, Any] | None:
+    """Return the record of a piece; None where there is none that can be read."""
+    path = Path(folder) / PIECES / f"{piece.name}.json"
+    try:
+        record = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError):
+        return None
+    return record if isinstance(record, dict) and "status" in record else None
+
+
+def sha256_of(path: str | os.PathLike[str]) -> str:
+    """Return the SHA-256 of a file."""
+    digest = hashlib.sha256()
+    with open(path, "rb") as stream:
+        while block := stream.read(_BYTES_AT_ONCE):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def cells_of(plan: TilePlan, mesh: TriangleMesh) -> NDArray[np.int64]:
+    """Return the cells of the vertices of a mesh, counted row by row in the grid of all.
+
+    Raises
+    ------
+    PyramidError
+        A vertex that is at no cell.
+    """
+    frame = plan.local_frame
+    x, y = frame.file_x(mesh.vertices[:, 0]), frame.file_y(mesh.vertices[:, 1])
+    columns, rows = plan.geometry.cells(x, y)
+    whole_rows, whole_columns = np.rint(rows), np.rint(columns)
+    off = max(np.abs(rows - whole_rows).max(), np.abs(columns - whole_columns).max())
+    n_rows, n_columns = plan.shape
+    inside = (whole_rows >= 0) & (whole_rows < n_rows)
+    inside &= (whole_columns >= 0) & (whole_columns < n_columns)
+    if off > 1e-3 or not inside.all():
+        raise PyramidError("a piece has vertices that are no cells of the plan; tile anew.")
+    cells: NDArray[np.int64] = (whole_rows * n_columns + whole_columns).astype(np.int64)
+    return cells
+
+
+def join(
+    plan: TilePlan, meshes: list[TriangleMesh], integrals: list[NDArray[np.float64]]
+) -> Joined:
+    """Return the meshes of pieces as one, each cell one vertex.
+
+    Parameters
+    ----------
+    plan : TilePlan
+    meshes : list of TriangleMesh
+        In the working frame.
+    integrals : list of (n_vertices,) float64
+        Of their scaling functions.
+
+    Raises
+    ------
+    PyramidError
+        Two pieces that have another height at the same cell.
+    """
+    cells = [cells_of(plan, mesh) for mesh in meshes]
+    unique, first, place = np.unique(np.concatenate(cells), return_index=True, return_inverse=True)
+    place = place.ravel()
+    heights = np.concatenate([mesh.vertices[:, 2] for mesh in meshes])
+    if (heights[first][place] != heights).any():
+        raise PyramidError("two pieces have other heights at the same cell; tile anew.")
+    starts = np.cumsum([0, *(mesh.n_vertices for mesh in meshes)])
+    faces = np.concatenate(
+        [place[start + mesh.faces] for start, mesh in zip(starts[:-1], meshes, strict=True)]
+    )
+    # A cell that several pieces have was given the integral 1 in each, and counts once.
+    counted = np.bincount(place, np.concatenate(integrals)) - (np.bincount(place) - 1.0)
+    rows, columns = np.divmod(unique, plan.shape[1])
+    x, y = plan.geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
+    frame = plan.local_frame
+    vertices = np.column_stack([frame.local_x(x), frame.local_y(y), heights[first]])
+    return Joined(vertices, faces, unique, counted)
+
+
+def _tile(plan: TilePlan, piece: Piece) -> GeoPyramid | None:
+    """Return the pyramid of a tile; None where it has no surface."""
+    dem = tile_dem(plan, piece)
+    if dem is None or not dem.valid.any():
+        return None
+    mesh = dem_mesh(dem, plan.local_frame)
+    if mesh.n_faces == 0:
+        return None
+    top, left, _, _ = plan.cells(piece)
+    rows, columns = np.nonzero(dem.valid)
+    locked = plan.is_shared(piece, rows + top, columns + left)
+    terrain = Terrain(
+        piece.name,
+        mesh,
+        dem,
+        RasterOrigin.from_dem(dem),
+        plan.coordinate_system,
+        plan.local_frame,
+        plan.vertical_unit,
+    )
+    levels = plan.levels if plan.n_stages > 1 else None
+    return analyse(terrain, levels=levels, locked=locked, **plan.wavelets).geo
+
+
+def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) -> GeoPyramid | None:
+    """Return the pyramid of a group; None where none of its parts has a surface."""
+    from wavelet_gis.io.pyramid.pyramid_file import read_levels
+
+    meshes, integrals = [], []
+    for name, checksum in inputs.items():
+        path = Path(folder) / PIECES / f"{name}.gpkg"
+        if sha256_of(path) != checksum:
+            raise InputFileError(f"{path}: this is not the file that was made; tile anew.")
+        pyramid = read_levels(path, 0).pyramid
+        meshes.append(pyramid.mesh(0))
+        integrals.append(pyramid.integrals(0))
+    if not meshes:
+        return None
+    whole = join(plan, meshes, integrals)
+    rows, columns = np.divmod(whole.cells, plan.shape[1])
+    locked = plan.is_shared(piece, rows, columns)
+    pyramid = core_analyse(
+        TriangleMesh(whole.vertices, whole.faces),
+        levels=None if piece.stage == plan.n_stages - 1 else plan.levels,
+        locked=locked,
+        integrals=whole.integrals,
+        **plan.wavelets,
+    )
+    geo = GeoPyramid(
+        pyramid=pyramid,
+        system=plan.coordinate_system,
+        frame=plan.local_frame,
+        vertical_unit=plan.vertical_unit,
+        origin=MeshOrigin(),
+        source_name=piece.name,
+    )
+    return geo.with_errors()
+
+
+def tile_dem(plan: TilePlan, piece: Piece) -> Dem | None:
+    """Return the cells of a tile, of whatever files have them; None where none has."""
+    from wavelet_gis.io.raster import CellWindow, read_dem
+    from wavelet_gis.io.raster.mosaic import mosaic
+
+    top, left, bottom, right = plan.cells(piece)
+    names, dems = [], []
+    for file in plan.files:
+        first_row, last_row = max(top, file.row), min(bottom, file.row + file.height - 1)
+        first_column = max(left, file.column)
+        last_column = min(right, file.column + file.width - 1)
+        if first_row > last_row or first_column > last_column:
+            continue
+        stat = os.stat(file.path)
+        if (stat.st_size, stat.st_mtime_ns) != (file.n_bytes, file.changed):
+            raise InputFileError(f"{file.path}: this file has changed since; tile anew.")
+        window = CellWindow(
+            first_row - file.row,
+            first_column - file.column,
+            last_row - first_row + 1,
+            last_column - first_column + 1,
+        )
+        dem, _ = read_dem(file.path, window=window, **plan.reading)
+        names.append(file.path)
+        dems.append(dem)
+    if not dems:
+        return None
+    part = mosaic(names, dems) if dems[1:] else dems[0]
+    return _in_place(plan, part, top, left, bottom, right)
+
+
+def _in_place(plan: TilePlan, part: Dem, top: int, left: int, bottom: int, right: int) -> Dem:
+    """Return the cells of a window, of which a part is known, in the grid of all."""
+    from dataclasses import replace
+
+    shape = (bottom - top + 1, right - left + 1)
+    a, b, c, d, e, f = plan.transform
+    transform = (a, b, c + a * left + b * top, d, e, f + d * left + e * top)
+    geometry = GridGeometry(shape, transform)
+    if part.values.shape == shape:
+        return replace(part, geometry=geometry)
+    x, y = part.geometry.centres(np.zeros(1), np.zeros(1))
+    columns, rows = geometry.cells(x, y)
+    row, column = round(float(rows[0])), round(float(columns[0]))
+    nodata = part.nodata
+    if nodata is None and part.values.dtype.kind == "f":
+        nodata = float("nan")
+    values = np.full(shape, 0 if nodata is None else nodata, dtype=part.values.dtype)
+    valid = np.zeros(shape, dtype=bool)
+    window = (slice(row, row + part.values.shape[0]), slice(column, column + part.values.shape[1]))
+    values[window], valid[window] = part.values, part.valid
+    return replace(part, values=values, valid=valid, geometry=geometry, nodata=nodata)
+
+
+def _figures(geo: GeoPyramid) -> dict[str, Any]:
+    pyramid, errors = geo.pyramid, geo.errors_at(0)
+    coarsest = pyramid.mesh(0)
+    figures: dict[str, Any] = {
+        "n_levels": pyramid.n_levels,
+        "sizes": [pyramid.n_vertices(level) for level in range(len(pyramid))],
+    }
+    if errors is not None:
+        figures |= {"rmse": errors.rmse_surface, "max_error": errors.max_error_surface}
+    integral = float(pyramid.integrals(0) @ coarsest.vertices[:, 2])
+    return {**figures, "integral": integral}

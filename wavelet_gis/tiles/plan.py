@@ -1,0 +1,331 @@
+"""How a raster is cut into tiles, and what holds for all of them: a plan that is kept as JSON."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from wavelet_core.errors import OptionError
+from wavelet_gis._fields import Fields
+from wavelet_gis.crs.agreement import agreed
+from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.errors import InputFileError
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
+from wavelet_gis.io.names import files_of, gdal_path, told_as_one
+from wavelet_gis.model.dem import GridGeometry, grid_bounds
+from wavelet_gis.model.terrain import frame_of_bounds
+
+__all__ = ["LEVELS", "TILE", "Piece", "SourceFile", "TilePlan", "plan_of_rasters"]
+
+#: Cells along the side of a tile.
+TILE = 1024
+
+#: Levels of a tile and of each group but the last: a level takes some 16 % of the vertices, so a
+#: group of four then has about as many as a tile.
+LEVELS = 8
+
+#: Options of `wavelet_core.analyse` that leave x and y of the vertices in place.
+_WAVELETS = ("norm", "partition", "prediction", "removal_fraction", "update")
+
+_FORMAT = "terrain-wavelets tiles 1"
+
+
+class Piece(NamedTuple):
+    """A tile (stage 0), or the group of up to four pieces of the stage before.
+
+    stage, row, column : int
+    """
+
+    stage: int
+    row: int
+    column: int
+
+    @property
+    def name(self) -> str:
+        """The name of its files, without suffix."""
+        return f"{self.stage}/{self.row:05d}_{self.column:05d}"
+
+
+class SourceFile(NamedTuple):
+    """A raster and where it lies in the grid of all.
+
+    path : str
+    row, column : int, of its first cell
+    height, width : int, in cells
+    n_bytes, changed : int, size and time of its last change, by which it is known again
+    """
+
+    path: str
+    row: int
+    column: int
+    height: int
+    width: int
+    n_bytes: int
+    changed: int
+
+
+@dataclass(frozen=True, slots=True)
+class TilePlan:
+    """What holds for all pieces.
+
+    Attributes
+    ----------
+    files : tuple of SourceFile
+        The first that has data counts.
+    shape : (n_rows, n_columns)
+        Of all cells.
+    transform : tuple of float
+        Of the grid; see `wavelet_gis.model.dem.GridGeometry`.
+    rows, columns : tuple of int
+        Where tiles end: those cells belong to both tiles.
+    levels : int
+        Of each piece but the last.
+    reading : dict
+        ``band``, ``nodata``, ``offline``.
+    wavelets : dict
+        Options of the analysis.
+    system, frame : dict
+        See `wavelet_gis.crs.frame`.
+    vertical_unit : str
+    """
+
+    files: tuple[SourceFile, ...]
+    shape: tuple[int, int]
+    transform: tuple[float, ...]
+    rows: tuple[int, ...]
+    columns: tuple[int, ...]
+    levels: int
+    reading: dict[str, Any]
+    wavelets: dict[str, Any]
+    system: dict[str, Any]
+    frame: dict[str, Any]
+    vertical_unit: str
+
+    @property
+    def geometry(self) -> GridGeometry:
+        """The grid of all cells."""
+        return GridGeometry(self.shape, self.transform)  # type: ignore[arg-type]
+
+    @property
+    def coordinate_system(self) -> CoordinateSystem:
+        """The CRS of all."""
+        return CoordinateSystem.from_dict(self.system)
+
+    @property
+    def local_frame(self) -> LocalFrame:
+        """The working frame of all."""
+        return LocalFrame.from_dict(self.frame)
+
+    @property
+    def n_stages(self) -> int:
+        """Number of stages; the last has one piece."""
+        side = max(len(self.rows), len(self.columns)) - 1
+        return 1 + (side - 1).bit_length()
+
+    def pieces(self, stage: int) -> list[Piece]:
+        """Return the pieces of a stage, row by row."""
+        n_rows, n_columns = (
+            -(-(len(ends) - 1) // (1 << stage)) for ends in (self.rows, self.columns)
+        )
+        return [Piece(stage, row, column) for row in range(n_rows) for column in range(n_columns)]
+
+    def parts(self, piece: Piece) -> list[Piece]:
+        """Return the pieces of the stage before that a group is made of."""
+        wanted = [
+            Piece(piece.stage - 1, 2 * piece.row + i, 2 * piece.column + j)
+            for i in (0, 1)
+            for j in (0, 1)
+        ]
+        there = set(self.pieces(piece.stage - 1))
+        return [part for part in wanted if part in there]
+
+    def cells(self, piece: Piece) -> tuple[int, int, int, int]:
+        """Return first row, first column, last row and last column of a piece, all in it."""
+        side = 1 << piece.stage
+        top, left = self.rows[piece.row * side], self.columns[piece.column * side]
+        bottom = self.rows[min((piece.row + 1) * side, len(self.rows) - 1)]
+        right = self.columns[min((piece.column + 1) * side, len(self.columns) - 1)]
+        return top, left, bottom, right
+
+    def is_shared(self, piece: Piece, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Return which cells of a piece lie on a border line with a neighbour."""
+        top, left, bottom, right = self.cells(piece)
+        shared: np.ndarray = np.zeros(len(rows), dtype=bool)
+        for at, ends, last in (
+            (rows, (top, bottom), self.rows[-1]),
+            (columns, (left, right), self.columns[-1]),
+        ):
+            for end in ends:
+                if end not in (0, last):
+                    shared |= at == end
+        return shared
+
+    def to_json(self) -> str:
+        """Return the plan as a text, the same for the same plan."""
+        fields = {"format": _FORMAT, **asdict(self)}
+        fields["files"] = [list(file) for file in self.files]
+        return json.dumps(fields, sort_keys=True, indent=1)
+
+    @property
+    def checksum(self) -> str:
+        """SHA-256 of the plan without the files, which each tile is asked for itself."""
+        fields = json.loads(self.to_json())
+        fields.pop("files")
+        return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()
+
+    @classmethod
+    def from_json(cls, text: str, name: str) -> TilePlan:
+        """Return the plan of a text.
+
+        Raises
+        ------
+        InputFileError
+            It is damaged, or of another format.
+        """
+        try:
+            raw = json.loads(text)
+            stored = Fields(raw, name, InputFileError)
+            if stored.text("format") != _FORMAT:
+                raise ValueError(f"the format is {raw['format']!r}")
+            n_rows, n_columns = stored.integers("shape", 1, 2**31 - 1)
+            return cls(
+                files=tuple(SourceFile(str(f[0]), *map(int, f[1:])) for f in raw["files"]),
+                shape=(n_rows, n_columns),
+                transform=tuple(stored.numbers("transform", 6)),
+                rows=tuple(int(row) for row in raw["rows"]),
+                columns=tuple(int(column) for column in raw["columns"]),
+                levels=stored.integer("levels", 1, 64),
+                reading=dict(stored.fields("reading")),
+                wavelets=dict(stored.fields("wavelets")),
+                system=dict(stored.fields("system")),
+                frame=dict(stored.fields("frame")),
+                vertical_unit=stored.text("vertical_unit"),
+            )
+        except (ValueError, KeyError, TypeError) as error:
+            raise InputFileError(
+                f"{name}: this is no plan of tiles ({error}); tile the input anew."
+            ) from error
+
+
+def plan_of_rasters(
+    data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    *,
+    tile: int = TILE,
+    levels: int = LEVELS,
+    crs: str | None = None,
+    vertical_unit: str | None = None,
+    band: int | None = None,
+    nodata: float | str | None = None,
+    offline: bool = False,
+    wavelets: dict[str, Any] | None = None,
+) -> TilePlan:
+    """Return the plan by which rasters are tiled; reads no more than their headers.
+
+    Parameters
+    ----------
+    data : path or sequence of path
+        Rasters of one grid, or a folder of such.
+    tile : int
+        Cells along the side of a tile.
+    levels : int
+        Of each tile, and of each group but the last.
+    crs, vertical_unit, band, nodata, offline
+        See `wavelet_gis.open`.
+    wavelets : dict, optional
+        Of `wavelet_core.analyse`: ``norm``, ``partition``, ``prediction``, ``removal_fraction`` and
+        ``update``.
+
+    Raises
+    ------
+    InputFileError
+        Files that cannot be read, or that contradict each other.
+    OptionError
+        A size or a number of levels that makes no tiles.
+    """
+    import rasterio
+
+    from wavelet_gis.crs.lookup import coordinate_system
+    from wavelet_gis.io.raster import CellWindow, read_dem
+    from wavelet_gis.io.raster.mosaic import first_cell
+
+    if tile < 8 or not 1 <= levels <= 64:
+        raise OptionError(
+            "{0} is {tile} and {1} is {levels}; give at least 8 cells, and 1 to 64 levels.",
+            "tile",
+            "levels",
+            tile=tile,
+            levels=levels,
+        )
+    for name in wavelets or {}:
+        if name not in _WAVELETS:
+            raise OptionError(f"{name} is no option of tiles; these are: {', '.join(_WAVELETS)}.")
+    paths = [os.path.abspath(path) for path in files_of(data)]
+    for path in paths:
+        if suffix_of(path) in CLOUD_SUFFIXES:
+            raise InputFileError(
+                f"{path}: this is a point cloud, and tiles are made of rasters only; analyse it, "
+                "or make a raster of it first (pdal's writers.gdal)."
+            )
+    reading = {"band": band, "nodata": nodata, "offline": offline}
+    heads = [read_dem(path, window=CellWindow(0, 0, 1, 1), **reading) for path in paths]  # type: ignore[arg-type]
+    place = agreed(
+        paths,
+        [
+            one._replace(
+                wkt=None if crs else one.wkt,
+                vertical_unit=None if vertical_unit else one.vertical_unit,
+            )
+            for _, one in heads
+        ],
+    )
+    grids = []
+    for path, (head, _) in zip(paths, heads, strict=True):
+        with rasterio.open(gdal_path(path)) as dataset:
+            grids.append(GridGeometry(dataset.shape, head.geometry.transform))
+    corners = np.array(
+        [first_cell(paths[0], grids[0], p, g) for p, g in zip(paths, grids, strict=True)]
+    )
+    low = corners.min(axis=0)
+    high = (corners + [grid.shape for grid in grids]).max(axis=0)
+    a, b, c, d, e, f = grids[0].transform
+    transform = (a, b, c + a * low[1] + b * low[0], d, e, f + d * low[1] + e * low[0])
+    shape = (int(high[0] - low[0]), int(high[1] - low[1]))
+    geometry = GridGeometry(shape, tuple(map(float, transform)))  # type: ignore[arg-type]
+    system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
+    name = told_as_one(paths)
+    frame, unit = frame_of_bounds(
+        name, system, grid_bounds(geometry), vertical_unit or place.vertical_unit
+    )
+    files = []
+    for path, corner, grid in zip(paths, corners - low, grids, strict=True):
+        stat = os.stat(path)
+        files.append(
+            SourceFile(
+                path, int(corner[0]), int(corner[1]), *grid.shape, stat.st_size, stat.st_mtime_ns
+            )
+        )
+    return TilePlan(
+        files=tuple(files),
+        shape=shape,
+        transform=geometry.transform,
+        rows=_ends(shape[0], tile),
+        columns=_ends(shape[1], tile),
+        levels=levels,
+        reading=reading,
+        wavelets={key: value for key, value in (wavelets or {}).items() if value is not None},
+        system=system.to_dict(),
+        frame=frame.to_dict(),
+        vertical_unit=unit,
+    )
+
+
+def _ends(n_cells: int, tile: int) -> tuple[int, ...]:
+    """Return the cells where tiles of about equal size begin and end."""
+    n_tiles = max(round((n_cells - 1) / tile), 1)
+    return tuple(round(k * (n_cells - 1) / n_tiles) for k in range(n_tiles + 1))

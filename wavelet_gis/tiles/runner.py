@@ -1,0 +1,117 @@
+"""Where the pieces are made: in this process, in others beside it, or on a Dask scheduler.
+
+Few fat tasks, a wave of them for each stage; what passes from one to the next are files, not
+results in memory. A task that is lost, with its worker or its scheduler, is done again from its
+inputs, and so is one that was half done: its files are written aside.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from importlib.util import find_spec
+from multiprocessing import get_context
+from typing import Any
+
+from wavelet_core.errors import MissingDependencyError
+from wavelet_gis.errors import OutputFileError
+from wavelet_gis.tiles.piece import make_piece
+
+__all__ = ["Job", "records_of", "require_dask"]
+
+#: Arguments of `wavelet_gis.tiles.piece.make_piece`.
+Job = tuple[str, str, Any, dict[str, str]]
+
+#: Times that all workers may be lost without a piece being made in between.
+_MOST_LOSSES = 5
+
+
+def records_of(
+    jobs: Sequence[Job], workers: int, scheduler: str | None
+) -> Iterator[dict[str, Any]]:
+    """Yield the records of pieces as they are made, in whatever order.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+    workers : int
+        Processes; with 1 the work is done in this one.
+    scheduler : str or None
+        Address of a Dask scheduler, whose workers see the same files.
+
+    Raises
+    ------
+    OutputFileError
+        Workers are lost again and again.
+    MissingDependencyError
+        A scheduler is named and dask is not installed.
+    """
+    if scheduler is not None:
+        yield from _on_dask(jobs, scheduler)
+    elif workers == 1 or len(jobs) == 1:
+        for job in jobs:
+            yield make_piece(*job)
+    else:
+        yield from _in_processes(jobs, workers)
+
+
+def require_dask() -> None:
+    """Raise where a scheduler is named and dask is not installed."""
+    if find_spec("distributed") is None:
+        raise MissingDependencyError(
+            "a scheduler is asked by dask.distributed; install it with 'pip install distributed', "
+            "or leave {0} out.",
+            "scheduler",
+        )
+
+
+def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]:
+    left = list(jobs)
+    n_losses = 0
+    while left:
+        n_before = len(left)
+        pool = ProcessPoolExecutor(
+            min(workers, len(left)), mp_context=get_context("spawn"), initializer=_leave_interrupts
+        )
+        try:
+            futures = {pool.submit(make_piece, *job): job for job in left}
+            for future in as_completed(futures):
+                record = future.result()
+                left.remove(futures[future])
+                yield record
+        except BrokenProcessPool as error:
+            n_losses = n_losses + 1 if len(left) == n_before else 0
+            if n_losses == _MOST_LOSSES:
+                raise OutputFileError(
+                    f"the workers were ended {_MOST_LOSSES} times before one of them had made a "
+                    "tile; give fewer workers or smaller tiles, if memory is short."
+                ) from error
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _leave_interrupts() -> None:
+    """Leave Ctrl-C to the program, which lets the pieces in flight be finished."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:
+    from distributed import Client
+    from distributed import as_completed as done
+
+    try:
+        client = Client(scheduler, timeout="30s", set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise OutputFileError(
+            f"{scheduler}: there is no Dask scheduler at this address ({error}); start one with "
+            "'dask scheduler', and workers with 'dask worker'."
+        ) from error
+    with client, client.as_current():
+        futures = [
+            client.submit(make_piece, *job, pure=False, retries=_MOST_LOSSES) for job in jobs
+        ]
+        for future in done(futures):
+            yield future.result()
+            future.release()

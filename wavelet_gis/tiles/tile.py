@@ -1,0 +1,221 @@
+"""A raster of any size as a tiled pyramid: stage by stage, from where an earlier run ended."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from wavelet_core.errors import OptionError
+from wavelet_gis.errors import OutputFileError, TerrainWarning
+from wavelet_gis.io.atomic import new_file
+from wavelet_gis.io.read_back import write_text
+from wavelet_gis.notes import warn
+from wavelet_gis.tiles.index import INDEX, PLAN, TileIndex, open_index, write_index
+from wavelet_gis.tiles.piece import PIECES, read_record, sha256_of
+from wavelet_gis.tiles.plan import LEVELS, TILE, Piece, TilePlan, plan_of_rasters
+from wavelet_gis.tiles.runner import Job, records_of, require_dask
+
+__all__ = ["Tiled", "tile_rasters"]
+
+#: Told of each piece: its record, how many are done, how many there are.
+OnPiece = Callable[[dict[str, Any], int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Tiled:
+    """What came of it.
+
+    Attributes
+    ----------
+    index : TileIndex
+        All that is there now.
+    n_made, n_found : int
+        Pieces made in this run, and those that were whole before it.
+    """
+
+    index: TileIndex
+    n_made: int
+    n_found: int
+
+    @property
+    def failed(self) -> list[dict[str, Any]]:
+        """Records of the tiles that were set aside."""
+        return [row for row in self.index.records.values() if row["status"] == "failed"]
+
+    def figures(self) -> dict[str, Any]:
+        """Return what it is as JSON-able values."""
+        plan, records = self.index.plan, self.index.records
+        whole = [row for row in records.values() if row["status"] == "whole"]
+        return {
+            "n_rows": plan.shape[0],
+            "n_columns": plan.shape[1],
+            "n_stages": plan.n_stages,
+            "n_tiles": len(plan.pieces(0)),
+            "n_pieces": len(records),
+            "n_made": self.n_made,
+            "n_found": self.n_found,
+            "n_levels": self.index.n_levels,
+            "n_bytes": sum(row["n_bytes"] for row in whole),
+            "failed": [
+                {"stage": r["stage"], "row": r["row"], "column": r["column"], "reason": r["reason"]}
+                for r in self.failed
+            ],
+        }
+
+
+def tile_rasters(
+    data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    folder: str | os.PathLike[str],
+    *,
+    tile: int = TILE,
+    levels: int = LEVELS,
+    workers: int = 1,
+    scheduler: str | None = None,
+    overwrite: bool = False,
+    on_piece: OnPiece | None = None,
+    **options: Any,
+) -> Tiled:
+    """Turn rasters into a tiled pyramid: one pyramid file for each tile and group, and an index.
+
+    Parameters
+    ----------
+    data : path or sequence of path
+        Rasters of one grid, or a folder of such; no more of them is read at once than a tile.
+    folder : path
+        A folder to be made, or that of an earlier run with the same input and options, which goes
+        on from there: what is whole by its checksum is left as it is.
+    tile : int
+        Cells along the side of a tile. Neighbours share a line of cells.
+    levels : int
+        Of each tile, and of each group but the last.
+    workers : int
+        Processes that make pieces; each needs some 600 bytes for a cell of a tile.
+    scheduler : str, optional
+        Address of a Dask scheduler instead, whose workers see the same files.
+    overwrite : bool
+        Whether a tile set of another input, or of other options, may be replaced.
+    on_piece : callable, optional
+        Told of each piece as it is made or found: its record, how many are done, and of how many.
+    **options
+        ``crs``, ``vertical_unit``, ``band``, ``nodata``, ``offline`` and ``wavelets``; see
+        `wavelet_gis.tiles.plan.plan_of_rasters`.
+
+    Raises
+    ------
+    InputFileError
+        Input that cannot be read or contradicts itself.
+    OutputFileError
+        The folder holds something else, or cannot be written.
+    OptionError, MissingDependencyError
+        Options without a meaning; a scheduler without dask.
+
+    Warns
+    -----
+    TerrainWarning
+        Of tiles that could not be made: they are set aside, and the others go on without them.
+    """
+    if workers < 1:
+        raise OptionError("{0} is {workers}; give at least 1.", "workers", workers=workers)
+    if scheduler is not None:
+        require_dask()
+    plan = plan_of_rasters(data, tile=tile, levels=levels, **options)
+    place = _prepared(Path(folder).absolute(), plan, overwrite)
+    n_total = sum(len(plan.pieces(stage)) for stage in range(plan.n_stages))
+    n_made = n_found = 0
+    for stage in range(plan.n_stages):
+        jobs: list[Job] = []
+        for piece in plan.pieces(stage):
+            inputs = _inputs(place, plan, piece)
+            record = read_record(place, piece)
+            if record is not None and _is_whole(place, plan, piece, record, inputs):
+                n_found += 1
+                if on_piece is not None:
+                    on_piece(record, n_made + n_found, n_total)
+            else:
+                jobs.append((str(place), plan.to_json(), piece, inputs))
+        for record in records_of(jobs, workers, scheduler):
+            n_made += 1
+            if on_piece is not None:
+                on_piece(record, n_made + n_found, n_total)
+    index = open_index(place)
+    write_index(index)
+    tiled = Tiled(index, n_made, n_found)
+    if tiled.failed:
+        first = tiled.failed[0]
+        warn(
+            TerrainWarning,
+            "tiles_set_aside",
+            "{count} of {n_pieces} pieces could not be made and were set aside, the first at stage "
+            "{stage}, row {row}, column {column}: {reason} (mend that and start again; the rest is "
+            "kept)",
+            stacklevel=3,
+            count=len(tiled.failed),
+            n_pieces=n_total,
+            stage=first["stage"],
+            row=first["row"],
+            column=first["column"],
+            reason=first["reason"].rstrip("."),
+        )
+    return tiled
+
+
+def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
+    """Return the folder, with the plan in it."""
+    if not folder.parent.is_dir():
+        raise OutputFileError(f"{folder.parent}: there is no such folder; create it first.")
+    is_there = folder.exists() and not (folder.is_dir() and not any(folder.iterdir()))
+    if is_there and not (folder / PLAN).is_file():
+        raise OutputFileError(
+            f"{folder}: this exists and is no folder with a {PLAN}; give another name."
+        )
+    text = plan.to_json()
+    if is_there and (folder / PLAN).read_text("utf-8", errors="replace") != text:
+        if not overwrite:
+            raise OutputFileError(
+                "{path}: this is a tile set of another input or of other options; give another "
+                "name, or {0} to replace it.",
+                "overwrite",
+                path=folder,
+            )
+        shutil.rmtree(folder / PIECES, ignore_errors=True)
+        (folder / INDEX).unlink(missing_ok=True)
+    folder.mkdir(exist_ok=True)
+    if not (folder / PLAN).is_file() or (folder / PLAN).read_text("utf-8") != text:
+        with new_file(folder / PLAN, overwrite=True) as scratch:
+            write_text(scratch, text)
+    return folder
+
+
+def _inputs(folder: Path, plan: TilePlan, piece: Piece) -> dict[str, str]:
+    """Return what a piece is made from: files and their dates, or pieces and their checksums."""
+    if piece.stage == 0:
+        top, left, bottom, right = plan.cells(piece)
+        return {
+            file.path: f"{file.n_bytes} bytes of {file.changed}"
+            for file in plan.files
+            if file.row <= bottom
+            and file.row + file.height > top
+            and file.column <= right
+            and file.column + file.width > left
+        }
+    records = {part: read_record(folder, part) for part in plan.parts(piece)}
+    return {
+        part.name: record["sha256"]
+        for part, record in records.items()
+        if record is not None and record["status"] == "whole"
+    }
+
+
+def _is_whole(
+    folder: Path, plan: TilePlan, piece: Piece, record: dict[str, Any], inputs: dict[str, str]
+) -> bool:
+    if record.get("plan") != plan.checksum or record.get("inputs") != inputs:
+        return False
+    if record["status"] != "whole":
+        return bool(record["status"] == "empty")
+    path = folder / PIECES / f"{piece.name}.gpkg"
+    return path.is_file() and sha256_of(path) == record["sha256"]
