@@ -298,7 +298,7 @@ class _Analysis:
         result = analyse_surface(
             self._mesh.vertices[:, :2],
             self._coefficients,
-            self._faces,
+            self._release_faces(),
             self._locked,
             self._scale.height_weights(),
             rules,
@@ -310,6 +310,11 @@ class _Analysis:
         self._stopped_by = result.stopped_by
         self._figures = self._in_input_units(result.figures)
         return [Step(*step) for step in result.steps]
+
+    def _release_faces(self) -> NDArray[np.int32]:
+        """Return the faces and keep them no longer: they take a twentieth of the memory."""
+        faces, self._faces = self._faces, np.empty((0, 3), dtype=np.int32)
+        return faces
 
     def _in_input_units(self, figures: list[LevelFigures]) -> tuple[LevelFigures, ...] | None:
         """Return the figures of the levels, the coarsest first; None where they are not those.

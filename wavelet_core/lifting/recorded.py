@@ -136,7 +136,6 @@ class Recorder:
         self._mesh, self._locked = mesh, locked
         self._frame = frame_of(mesh, parameters["attribute_weights"])
         self._manner = _manner_of(update, parameters, self._frame)
-        self._columns = _columns(mesh)
         self._parts: list[RecordPart] = []
         self._writer, self._begun = Writer(), dict[str, Any]()
         self._size = mesh.n_vertices
@@ -167,7 +166,7 @@ class Recorder:
         else:
             self._failed = not takes(self._level, self._writer, step, self._frame.weights)
         if _begins_part(level.n_vertices, self._size, self._mesh.n_vertices, self._manner):
-            self._next = _begin(level, level.ids, self._columns, self._locked, self._manner)
+            self._next = _begin(level, level.ids, _columns(self._mesh), self._locked, self._manner)
 
     def _begin_part(self, begun: dict[str, Any]) -> None:
         self._parts.append(RecordPart(self._writer.answers(), **self._begun))
@@ -181,7 +180,7 @@ class Recorder:
         if self._failed or not steps:
             return None
         parts = (*self._parts, RecordPart(self._writer.answers(), **self._begun))
-        return Told(Record(self._frame, parts), steps, coarse, _digest(self._columns))
+        return Told(Record(self._frame, parts), steps, coarse, _digest(_columns(self._mesh)))
 
 
 def frame_of(mesh: TriangleMesh, attribute_weights: Sequence[float]) -> Frame:

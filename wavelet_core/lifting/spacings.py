@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._validate import FloatArray
+from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
 from .pyramid import Pyramid
 
@@ -30,16 +32,28 @@ def level_spacings(pyramid: Pyramid) -> FloatArray:
     >>> float(spacings[-1]), bool(spacings[0] > 15)
     (10.0, True)
     """
-    spacings = np.full(pyramid.n_levels + 1, np.nan)
-    for level, mesh in enumerate(pyramid):
-        spacings[level] = mesh_spacing(mesh)
+    if pyramid.horizontal is None:
+        return np.array([mesh_spacing(mesh) for mesh in pyramid])
+    # x and y do not change, so no level need be synthesised, and none but the present one kept
+    spacings = np.empty(pyramid.n_levels + 1)
+    plan, faces = pyramid.horizontal, pyramid.faces
+    for level in range(pyramid.n_levels, -1, -1):
+        spacings[level] = _spacing(plan, faces)
+        if level > 0:
+            step = pyramid.steps[level - 1]
+            faces = merged_faces(faces, merge_map(step.odd, step.target, len(plan)))
+            plan = plan[even_positions(step.odd, len(plan))]
     return spacings
 
 
 def mesh_spacing(mesh: TriangleMesh) -> float:
     """Return the median length, in plan, of the edges of a mesh; NaN without faces."""
-    if not mesh.n_faces:
+    return _spacing(mesh.vertices[:, :2], mesh.faces)
+
+
+def _spacing(plan: FloatArray, faces: NDArray[np.integer]) -> float:
+    if not len(faces):
         return float("nan")
-    corners = mesh.vertices[mesh.faces, :2]
+    corners = plan[faces]
     sides = corners - corners[:, [1, 2, 0]]
     return float(np.median(np.hypot(sides[..., 0], sides[..., 1])))

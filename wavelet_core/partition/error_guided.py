@@ -175,6 +175,7 @@ def analyse_surface(
     level = SurfaceLevel(
         plan, columns * weights, faces, locked, rules.with_update, rules.outline_tolerance
     )
+    del faces  # which nobody else may keep
     if integrals is not None:
         level.begin_with(integrals)
     steps: list[CollapseStep] = []

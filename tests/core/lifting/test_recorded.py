@@ -1,5 +1,6 @@
 """A record tells its pyramid to the bit, on every engine and for any number of threads."""
 
+import hashlib
 from dataclasses import replace
 
 import numpy as np
@@ -83,6 +84,23 @@ def test_an_analysis_takes_the_record_that_a_second_walk_does(name, options, par
     if pyramid.n_levels and (name, options) != ("holes", "outline"):
         assert are_alike(pyramid.told.record, record_of(pyramid.with_parts(), mesh))
         assert record_of(pyramid, mesh) is pyramid.told.record
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize(
+    ("options", "expected"), [({}, "d79cd9f1a11a2461"), ({"max_error": 9.0}, "f6f7fa38dadc7dc7")]
+)
+def test_records_are_those_of_the_first_files_of_format_2(name, options, expected):
+    """Whoever reads those answers otherwise cannot read the files that are there."""
+    i, j = np.mgrid[:40, :50]
+    z = (3 * i * i + 5 * j * j + i * j) % 97 + 2 * i + 40 * ((i // 9 + j // 13) % 3)
+    mesh = TriangleMesh.from_grid(z.astype(float), np.arange(50.0), np.arange(40.0))
+    digest = hashlib.sha256()
+    with engine(name):
+        for part in analyse(mesh, record=True, **options).told.record.parts:
+            for array in (part.answers.levels, *part.answers.going, *part.answers.targets):
+                digest.update(array.tobytes())
+    assert digest.hexdigest()[:16] == expected
 
 
 def test_a_record_of_the_analysis_is_not_taken_for_another_pyramid_or_input():
