@@ -199,10 +199,15 @@ def rounded(clean, sigma, cell, rng):
     return np.round(clean / step) * step, {}
 
 
-KINDS = (white, correlated, correlated_estimated, by_place, with_outliers, rounded)
+def weak(clean, sigma, cell, rng):
+    """White noise of a tenth of sigma, which is not given: rough relief is far above it."""
+    return white(clean, sigma / 10, cell, rng)[0], {}
 
 
-def kinds(data, only_ours):
+KINDS = (white, correlated, correlated_estimated, by_place, with_outliers, rounded, weak)
+
+
+def kinds(data, only_ours, names):
     """Print a table of kinds of noise by filters on each DEM; ours gets what its row says."""
     peers = {
         "Gaussian": gaussian,
@@ -212,14 +217,16 @@ def kinds(data, only_ours):
     }
     if find_spec("skimage") and find_spec("pywt"):
         peers |= {"non-local means": non_local_means, "BayesShrink": bayes_shrink}
-    names = ["noisy", *([] if only_ours else peers), "ours"]
-    print("| DEM | noise |", " | ".join(names), "|")
-    print("| --- | --- |", " | ".join(["---:"] * len(names)), "|", flush=True)
+    columns = ["noisy", *([] if only_ours else peers), "ours"]
+    print("| DEM | noise |", " | ".join(columns), "|")
+    print("| --- | --- |", " | ".join(["---:"] * len(columns)), "|", flush=True)
     for name, top, left, cell, sigma in DEMS:
         with rasterio.open(data / "dems" / name) as file:
             rows, columns = slice(top, top + SMALL_WINDOW), slice(left, left + SMALL_WINDOW)
             clean = file.read(1).astype(float)[rows, columns]
         for kind in KINDS:
+            if names and kind.__name__ not in names:
+                continue
             noisy, options = kind(clean, sigma, cell, np.random.default_rng(0))
             figures = [rmse(noisy, clean)]
             if not only_ours:
@@ -300,11 +307,13 @@ def main():
     parser.add_argument("--pyramids", type=int, default=32)
     parser.add_argument("--pictures", type=Path)
     parser.add_argument("--only-ours", action="store_true", help="leave the others out")
-    parser.add_argument("--kinds", action="store_true", help="noise of several kinds instead")
+    parser.add_argument(
+        "--kinds", nargs="*", metavar="NAME", help="noise of several kinds, or of these, instead"
+    )
     arguments = parser.parse_args()
     warnings.filterwarnings("ignore", category=UserWarning)  # of levels and wavelets tried
-    if arguments.kinds:
-        kinds(arguments.data, arguments.only_ours)
+    if arguments.kinds is not None:
+        kinds(arguments.data, arguments.only_ours, arguments.kinds)
         return
     lidar_profile(arguments.data, arguments.pictures)
     for name, top, left, cell, sigma in DEMS:

@@ -4,8 +4,9 @@
     python benchmarks/engines.py --real [--data ../shared/data] [--results FILE.json]
 
 Each run is a process of its own, whose kernels are in numba's cache; ratios are within one run of
-this script. ``whole`` is the time of the process, imports included; memory is what the analysis
-adds to that of the input mesh. With ``--results`` the figures of real inputs are kept after each,
+this script. Seconds are of the processor, all threads together, which other work on the machine
+hardly touches; ``whole`` is the process, imports included. Memory is what the work adds to that of
+the input mesh. With ``--results`` the figures of real inputs are kept after each,
 and those that the file holds are printed and not run again: it may be stopped and run in parts.
 """
 
@@ -45,7 +46,7 @@ else:
         sys.exit(0)
 tolerance = 0.02 * float(np.ptp(mesh.vertices[:, 2]))
 before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-began, busy = time.perf_counter(), time.process_time()
+busy = time.process_time()
 if design == "denoise":
     result = wc.denoise(mesh, 1.0)
     digest = hashlib.sha256(result.vertices.tobytes()).hexdigest()
@@ -57,29 +58,25 @@ else:
         for array in (step.odd, step.target, step.indices, step.weights, step.details):
             seen.update(array.tobytes())
     digest, size = seen.hexdigest(), pyramid.n_vertices(0)
-seconds = time.perf_counter() - began
 used = time.process_time() - busy
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-print(json.dumps({"n": mesh.n_vertices, "left": size, "seconds": seconds,
-                  "used": used, "digest": digest,
+print(json.dumps({"n": mesh.n_vertices, "left": size, "used": used, "digest": digest,
                   "bytes": 1024 * (peak - before) / mesh.n_vertices}))
 """
 
 
 def run(engine: str, name: str, n: int, design: str) -> dict:
     """Return the figures of one piece of work on one engine."""
-    import time
-
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TERRAIN_WAVELETS_ENGINE": engine}
     if engine == "arrays":
         environment["TERRAIN_WAVELETS_NO_NUMBA"] = "1"
-    began = time.perf_counter()
+    began = sum(os.times()[2:4])
     said = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", WORK, name, str(n), design],
         env=environment, capture_output=True, text=True, check=True,
     )  # fmt: skip
     figures = json.loads(said.stdout)
-    return {**figures, "whole": time.perf_counter() - began} if figures else {}
+    return {**figures, "whole": sum(os.times()[2:4]) - began} if figures else {}
 
 
 def compare(name: str, n: int, label: str, design: str) -> None:
@@ -89,8 +86,8 @@ def compare(name: str, n: int, label: str, design: str) -> None:
     same = "same" if ours["digest"] == theirs["digest"] else "DIFFER"
     print(
         f"| {Path(name).stem} | {label} | {ours['n']:,} | {ours['left']:,} | "
-        f"{ours['seconds']:.1f} | {theirs['seconds']:.1f} | "
-        f"{theirs['seconds'] / ours['seconds']:.1f} | {theirs['whole']:.1f} | "
+        f"{ours['used']:.1f} | {theirs['used']:.1f} | "
+        f"{theirs['used'] / ours['used']:.1f} | {theirs['whole']:.1f} | "
         f"{theirs['bytes']:.0f} | {same} |",
         flush=True,
     )
@@ -104,7 +101,7 @@ def real_inputs(folder: Path) -> list[Path]:
 
 
 def compare_real(folder: Path, label: str, results: Path | None) -> None:
-    """Print rows of seconds of the processor, which other work on the machine does not touch."""
+    """Print rows of real inputs."""
     kept = json.loads(results.read_text("utf-8")) if results and results.exists() else {}
     for path in real_inputs(folder):
         key = f"{path.name}, {label}"

@@ -223,7 +223,7 @@ class ClusterDetails(PyramidAlgorithm):
         geo = self.geo_pyramid(request)
         is_learned = _teacher(request) != TEACHERS[0]
         labelled = self._classes(request, geo) if is_learned else self._clusters(request, geo)
-        summary = labelled.summary()
+        summary = request.computed(lambda work: labelled.summary(), 0.7, 0.8)
         word = tr("class") if is_learned else tr("cluster")
         for row in summary["clusters"]:
             request.say(f"{word} {row['label']}: {row['n_vertices']} ({100 * row['share']:.1f} %)")
@@ -259,7 +259,7 @@ class ClusterDetails(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        return request.computed(compute, 0.05, 0.8)
+        return request.computed(compute, 0.05, 0.7)
 
     def _classes(self, request: Request, geo: GeoPyramid) -> Labelled:
         from wavelet_gis.workflows.learning.cluster import classify
@@ -281,7 +281,7 @@ class ClusterDetails(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        return request.computed(compute, 0.05, 0.8)
+        return request.computed(compute, 0.05, 0.7)
 
     def _given(self, request: Request, geo: GeoPyramid) -> NDArray[np.int64]:
         """Return the classes that are known, below 0 where they are not."""

@@ -153,6 +153,8 @@ class ExtractLevel(PyramidAlgorithm):
         rules = [request.has("VERTICES_WANTED"), has_error, request.whole("LEVEL")]
         if sum(map(bool, rules)) > 1:
             return tr("Give one of three: a level, a number of vertices, or the largest error.")
+        if request.whole("REFINE") and not has_error:
+            return tr("Rounds of refinement are of the largest error; give both or none.")
         return tolerance_refusal(request) or super().refusal(request)
 
     def take_layers(self, request: Request) -> None:
@@ -178,7 +180,7 @@ class ExtractLevel(PyramidAlgorithm):
         if by_place:
             finest = request.computed(lambda work: geo.pyramid.synthesise(), 0.05, 0.1)
             max_error = limits_of(request, self.tolerance, geo, finest)
-        refine = 0 if max_error is None else request.whole("REFINE")
+        refine = request.whole("REFINE")
 
         def compute(work: Work) -> Surface:
             return extract(

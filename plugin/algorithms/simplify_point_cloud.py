@@ -102,7 +102,7 @@ class SimplifyPointCloud(CloudInput, SimplifyDem):
         path = request.output_file("THINNED")
         if not path:
             return {}
-        max_error = request.number("MAX_ERROR")
+        max_error = simplified.limits
         request.stage(tr("Measuring the Delaunay TIN of the points that stay"))
         thinned, errors = request.computed(
             lambda work: simplified.thinned(max_error, work.progress), 0.9, 0.98

@@ -890,6 +890,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Rounds of refinement are of the largest error; give both or none.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Instead of a level, give a number of vertices or the largest error, and you get a size between two levels. The log shows how large and how accurate each level is; level 0 is the coarsest.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1901,6 +1906,11 @@
   <message>
     <location filename="../../plugin/parameters/tolerance.py"/>
     <source>Zones of other accuracy</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>{}: no point of the terrain is in a cell of it; check that the layers overlap.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -890,6 +890,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
+    <source>Rounds of refinement are of the largest error; give both or none.</source>
+    <translation>Runden der Verfeinerung gehören zum größten Fehler; beides angeben oder keines von beiden.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Synthesises the terrain at one level of a pyramid and gives it as triangles, vertices, a raster or a mesh file for hydraulic models. Instead of a level, give a number of vertices or the largest error, and you get a size between two levels. The log shows how large and how accurate each level is; level 0 is the coarsest.</source>
     <translation>Setzt das Gelände in einer Stufe einer Pyramide zusammen und gibt es als Dreiecke, Punkte, Raster oder als Netzdatei für hydraulische Modelle. Statt einer Stufe geben Sie eine Anzahl von Punkten oder den größten Fehler und erhalten eine Größe zwischen zwei Stufen. Das Protokoll zeigt, wie groß und wie genau jede Stufe ist; Stufe 0 ist die gröbste.</translation>
   </message>
@@ -1902,6 +1907,11 @@
     <location filename="../../plugin/parameters/tolerance.py"/>
     <source>Zones of other accuracy</source>
     <translation>Zonen anderer Genauigkeit</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/tolerance.py"/>
+    <source>{}: no point of the terrain is in a cell of it; check that the layers overlap.</source>
+    <translation>{}: kein Punkt des Geländes liegt in einer seiner Zellen; prüfen, ob die Layer sich überlappen.</translation>
   </message>
   <message>
     <location filename="../../plugin/provider.py"/>

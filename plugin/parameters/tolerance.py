@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -15,8 +16,9 @@ from qgis.core import (
     QgsProcessingParameterRasterLayer,
 )
 
+from ..qgis_io.crs_and_progress import require_running
 from ..ui.enums import NUMERIC_FIELD, POLYGONS
-from ..ui.exceptions import QgsProcessingException
+from ..ui.exceptions import QgsCsException, QgsProcessingException
 from ..ui.translation import tr
 
 if TYPE_CHECKING:
@@ -27,6 +29,10 @@ if TYPE_CHECKING:
     from ..base import TerrainWaveletsAlgorithm
     from ..qgis_io.raster_reader import RasterInput
     from .request import Request
+
+
+#: Places that are transformed between two looks at whether to stop.
+CHUNK = 10_000
 
 
 class ToleranceInput(NamedTuple):
@@ -141,10 +147,31 @@ def _of_raster(
 
     places = positions[:, :2]
     if raster.crs.isValid() and crs.isValid() and raster.crs != crs:
-        transform = QgsCoordinateTransform(crs, raster.crs, request.transforms)
-        moved = (transform.transform(x, y) for x, y in places.tolist())
-        places = np.array([(point.x(), point.y()) for point in moved])
-    return values_in_cells(read_dem(raster, request.feedback), *places.T)
+        places = _moved(
+            QgsCoordinateTransform(crs, raster.crs, request.transforms), places, request
+        )
+    values = values_in_cells(read_dem(raster, request.feedback), *places.T)
+    if np.isnan(values).all():
+        raise QgsProcessingException(
+            tr(
+                "{}: no point of the terrain is in a cell of it; check that the layers overlap."
+            ).format(raster.name)
+        )
+    return values
+
+
+def _moved(
+    transform: QgsCoordinateTransform, places: NDArray[np.float64], request: Request
+) -> NDArray[np.float64]:
+    """Return places in another CRS; NaN where it has none."""
+    moved = np.full_like(places, np.nan)
+    for row, (x, y) in enumerate(places.tolist()):
+        if row % CHUNK == 0:
+            require_running(request.feedback)
+        with contextlib.suppress(QgsCsException):
+            point = transform.transform(x, y)
+            moved[row] = point.x(), point.y()
+    return moved
 
 
 def _set_in_zones(
@@ -160,7 +187,7 @@ def _set_in_zones(
     field, shapes = request.text("ZONE_FIELD"), []
     for feature in features_in(zones, crs, request.transforms, request.feedback):
         value = number_of(feature, field)
-        if value is not None:
+        if value is not None and value == value:  # not NaN
             shapes.append((value, feature.geometry()))
     n_inside = 0
     for value, geometry in sorted(shapes, key=lambda shape: -shape[0]):  # the strictest last

@@ -1,7 +1,14 @@
-"""The exception by which an algorithm tells its user in one line why it stops."""
+"""QGIS's exceptions, which its stubs do not have.
+
+``QgsProcessingException`` is how an algorithm tells its user in one line why it stops;
+``QgsCsException`` is raised where coordinates cannot be transformed.
+"""
 
 from __future__ import annotations
 
-from qgis.core import QgsProcessingException  # type: ignore[attr-defined] # not in the stubs
+from qgis.core import (  # type: ignore[attr-defined]
+    QgsCsException,
+    QgsProcessingException,
+)
 
-__all__ = ["QgsProcessingException"]
+__all__ = ["QgsCsException", "QgsProcessingException"]

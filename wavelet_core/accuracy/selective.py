@@ -1,6 +1,7 @@
 """A TIN out of a pyramid that is fine in some places and coarse in others, without cracks.
 
-Every collapse of a pyramid replaces the faces around a vertex by others over the same polygon. A
+Every collapse of a pyramid replaces the faces around a vertex by others over the same polygon (or,
+where the outline may move, over one that leaves a strip of it out). A
 collapse that took faces away which an earlier one had laid has to be undone before that one is;
 otherwise collapses know nothing of each other. So any set of collapses that is closed in this sense
 may be undone, and what is left are the faces of a valid TIN: the *multi-triangulation* of De
@@ -93,7 +94,8 @@ def mesh_within(
     depends on, wherever an input vertex is too far from that face. Without an update, and with
     ``keep_points``, the heights are the input's and the result is the smallest there is in the
     pyramid. With an update a height depends on what is undone around it; it is synthesised by the
-    steps that are, and measured so.
+    steps that are, and measured so. Input vertices that a moved outline leaves outside have no
+    error, here as in the errors of the levels.
     """
     points = pyramid.mesh(pyramid.n_levels).vertices
     limits = np.asarray(tolerance, dtype=np.float64)
@@ -219,8 +221,8 @@ class _Places:
         self._locate(np.arange(len(points)), np.flatnonzero(is_there))
 
     def move(self, gone: NDArray[np.bool_], new: NDArray[np.bool_]) -> None:
-        """Find the points of the faces that are gone in those that are new."""
-        moved = np.flatnonzero((self._face != NOBODY) & gone[self._face])
+        """Find the points of the faces that are gone, and those outside, in the new faces."""
+        moved = np.flatnonzero((self._face == NOBODY) | gone[self._face])
         self._face[moved] = NOBODY
         self._locate(moved, np.flatnonzero(new))
 

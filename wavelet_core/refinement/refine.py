@@ -449,8 +449,8 @@ def _strictness(limits: FloatArray | None, scale: float) -> FloatArray | None:
     """Return by how much squared errors count, where the tolerance is the square of a scale."""
     if limits is None:
         return None
-    with np.errstate(divide="ignore"):
-        return np.minimum((scale / limits) ** 2, np.finfo(np.float64).max)
+    with np.errstate(divide="ignore"):  # times a squared error, the most is not to overflow
+        return np.minimum((scale / limits) ** 2, np.sqrt(np.finfo(np.float64).max))
 
 
 def _require_sense(

@@ -10,8 +10,9 @@ named, and loaded when it writes.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib import import_module
+from itertools import chain, count
 from typing import NamedTuple
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "MeshFormat",
     "RasterFormat",
     "any_of",
+    "identifiers",
     "mesh_format",
     "suffix_of",
 ]
@@ -141,6 +143,30 @@ PYRAMID_SUFFIX = ".gpkg"
 
 #: Pictures that matplotlib draws.
 PICTURE_SUFFIXES = (".png", ".svg", ".pdf")
+
+
+def identifiers(names: Iterable[str], prefix: str = "") -> list[str]:
+    """Return names as ASCII identifiers, each another one.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Any, such as those of attributes.
+    prefix : str
+        Before each.
+
+    Examples
+    --------
+    >>> identifiers(["depth (m)", "depth [m]", "Höhe"])
+    ['depth__m_', 'depth__m__2', 'H_he']
+    """
+    found: list[str] = []
+    for name in names:
+        cleaned = "".join(c if c.isalnum() and c.isascii() else "_" for c in name)
+        cleaned = prefix + (cleaned or "attribute")
+        tried = chain([cleaned], (f"{cleaned}_{number}" for number in count(2)))
+        found.append(next(word for word in tried if word not in found))
+    return found
 
 
 def suffix_of(path: str | os.PathLike[str]) -> str:

@@ -51,7 +51,7 @@ class Surface(InOtherLibraries):
     mesh : TriangleMesh
         In the working frame.
     vertex_ids : (n_vertices,) int64
-        Ids of its vertices in the input.
+        Ids of its vertices in the input; -1 of nodes that a mesh for a solver has besides.
     level : int
         The level that it is, or, of a size between two, the finer one.
     errors : SurfaceErrors or None

@@ -100,18 +100,21 @@ class Simplified(Surface):
         )
 
     def thinned(
-        self, max_error: float | None = None, progress: Progress | None = None
+        self,
+        max_error: float | NDArray[np.float64] | None = None,
+        progress: Progress | None = None,
     ) -> tuple[PointCloud, SurfaceErrors]:
         """Return the points of a cloud that carry its surface, each as it came, and their errors.
 
         They are the vertices of the TIN. Whoever triangulates them again gets other triangles,
-        those of Delaunay, which may be farther off: the errors are measured on these.
+        those of Delaunay, which may be farther off: the errors are measured on these, at all points
+        of the surface.
 
         Parameters
         ----------
-        max_error : float, optional
+        max_error : float or (n_input_vertices,) float64, optional
             Points are added, where the error is largest, until no vertex of the input is farther
-            from the Delaunay triangles; in the input's unit of z.
+            from the Delaunay triangles; in the input's unit of z, one for all or one for each.
         progress : callable, optional
             Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -124,22 +127,41 @@ class Simplified(Surface):
         """
         assert self.terrain is not None
         cloud, origin = self.terrain.original, self.terrain.origin
+        if self.terrain.segments is not None and isinstance(cloud, PointCloud):
+            raise OptionError(
+                "{name}: with lines its vertices are no longer those of the cloud; leave {0} and "
+                "{1} out.",
+                "breaklines",
+                "clip",
+                name=self.terrain.name,
+            )
         if not (isinstance(cloud, PointCloud) and isinstance(origin, CloudOrigin)):
             raise OptionError(
                 "{name}: this is no point cloud, so there are no points to thin.",
                 name=self.terrain.name,
             )
+        if len(origin.shifts):
+            raise OptionError(
+                "{name}: {0} {rule!r} gives heights that no point has, so no points carry the "
+                "surface; choose lowest, highest or first.",
+                "duplicates",
+                name=self.terrain.name,
+                rule=origin.duplicates,
+            )
         points, scale = self.terrain.mesh.vertices, self.terrain.frame.z_scale
-        ids = self.vertex_ids
+        ids = self.vertex_ids[self.vertex_ids >= 0]
+        limits = None if max_error is None else np.asarray(max_error) * scale
         while True:
             mesh = TriangleMesh.from_points(points[ids])
             cover = cover_of(mesh, points[:, :2])
             report(progress, 1.0 - len(self.vertex_ids) / len(ids))
-            worst = _worst_of_faces(mesh, points, cover, max_error and max_error * scale)
+            worst = _worst_of_faces(mesh, points, cover, limits)
             if len(worst) == 0:
                 break
             ids = np.union1d(ids, worst)
-        errors = measured(mesh, points, scale, cover)
+        is_all = origin.n_points == len(points)
+        every = points if is_all else self.terrain.points_for_errors()
+        errors = measured(mesh, every, scale, cover if is_all else None)
         return cloud.subset(origin.vertex_rows()[ids]), errors
 
     def for_solver(
@@ -158,9 +180,9 @@ class Simplified(Surface):
         min_angle : float
             Degrees, at most 30. Angles that outline and lines have between them stay.
         longest_edge, shortest_edge, max_area : float, optional
-            In the unit of x and y, or the metre for a geographic CRS. No two nodes of the TIN are
-            nearer than ``shortest_edge``; the triangulation itself may make an edge shorter where
-            an angle needs it.
+            In the unit of x and y, or the metre for a geographic CRS. No two points of the input
+            become nodes that are nearer than ``shortest_edge``, but for those of outline and
+            lines; the triangulation itself may make an edge shorter where an angle needs it.
         progress : callable, optional
             Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -192,7 +214,17 @@ class Simplified(Surface):
             limits=None if self.limits is None else self.limits * z_scale,
             progress=progress,
         )
-        if made.n_above:
+        if made.n_above and not made.are_too_near:
+            warn(
+                TerrainWarning,
+                "solver_mesh_not_done",
+                "{name}: {n} input points are still farther off than they may be; refine the TIN "
+                "first, with a smaller {0}",
+                "max_error",
+                name=terrain.name,
+                n=made.n_above,
+            )
+        elif made.n_above:
             warn(
                 TerrainWarning,
                 "solver_mesh_beyond_tolerance",
@@ -212,6 +244,7 @@ class Simplified(Surface):
             if self.zones and self.limits is not None
             else (),
             is_fitted=False,
+            rounds=(),  # what they tell of is the TIN
             along_lines=measured_along_lines(terrain, mesh),
             quality=quality_of(mesh),
         )
@@ -291,6 +324,8 @@ def simplify(
     """
     require_terrain(terrain)
     require_memory(terrain.mesh.n_vertices, 1 + terrain.mesh.attributes.shape[1])
+    if zones is not None and (vertices is not None or max_rms is not None):
+        raise OptionError("{0} are of {1}; leave them out.", "zones", "max_error")
     has_max_error = max_error is not None or zones is not None
     if (vertices is not None) + has_max_error + (max_rms is not None) != 1:
         raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
@@ -355,6 +390,18 @@ def simplify(
         # A vertex on the outline may have gone unmeasured in a round; the pyramid's level holds.
         tin = finished(pyramid, terrain.mesh, fit=fit, rounds=0, keep_points=keep_points)
         at_vertices = measured(tin.mesh, terrain.mesh.vertices, z_scale)
+    if limits is not None and _n_beyond(tin.mesh, terrain, limits):
+        tin = finished_within(pyramid, terrain.mesh, limits * z_scale, rounds=0)
+        at_vertices = measured(tin.mesh, terrain.mesh.vertices, z_scale)
+        if n_beyond := _n_beyond(tin.mesh, terrain, limits):
+            warn(
+                TerrainWarning,
+                "tolerance_not_kept",
+                "{name}: {n} input points are farther off than {0} allows there",
+                "max_error",
+                name=terrain.name,
+                n=n_beyond,
+            )
     is_all = len(points) == terrain.mesh.n_vertices
     errors = at_vertices if is_all else measured(tin.mesh, points, z_scale)
     warn_of_error_above(
@@ -382,6 +429,13 @@ def simplify(
         if limits is None and max_error is not None
         else limits,
     )
+
+
+def _n_beyond(mesh: TriangleMesh, terrain: Terrain, limits: NDArray[np.float64]) -> int:
+    """Return how many input vertices are farther off than they may be."""
+    errors = np.abs(surface_errors(mesh, terrain.mesh.vertices)) / terrain.frame.z_scale
+    slack = ROUNDING * float(np.ptp(terrain.mesh.vertices[:, 2])) / terrain.frame.z_scale
+    return int((errors > limits * (1.0 + ROUNDING) + slack).sum())
 
 
 def _largest_of(limits: NDArray[np.float64], terrain: Terrain) -> float:
@@ -430,14 +484,18 @@ def _without_update(keywords: dict[str, Any]) -> dict[str, Any]:
 
 
 def _worst_of_faces(
-    mesh: TriangleMesh, points: NDArray[np.float64], cover: Cover, tolerance: float | None
+    mesh: TriangleMesh,
+    points: NDArray[np.float64],
+    cover: Cover,
+    limits: NDArray[np.float64] | None,
 ) -> NDArray[np.int64]:
     """Return the point of each face that is farthest off, where that is more than a tolerance."""
-    if tolerance is None:
+    if limits is None:
         return np.empty(0, dtype=np.int64)
     off = np.abs(surface_errors(mesh, points, cover)[cover.point])
     # Rounding of a vertex's own height must not add it again.
-    is_off = off > max(tolerance, 1e-9 * float(np.ptp(points[:, 2])))
+    of_each = np.broadcast_to(limits, (len(points),))[cover.point]
+    is_off = off > np.maximum(of_each, 1e-9 * float(np.ptp(points[:, 2])))
     face, point, off = cover.face[is_off], cover.point[is_off], off[is_off]
     order = np.lexsort((point, -off, face))
     is_first = np.ones(len(order), dtype=bool)

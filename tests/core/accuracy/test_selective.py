@@ -12,6 +12,7 @@ from wavelet_core.accuracy.between_levels import _thinned_level, mesh_of_accurac
 from wavelet_core.accuracy.selective import _history_of, mesh_within
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.mesh.location import surface_errors
+from wavelet_core.refinement.finish import finished_within
 
 DESIGNS = {
     "surface": {},
@@ -190,3 +191,31 @@ def test_it_stops_when_told_to() -> None:
     pyramid = analyse(synthetic.hills(20, 20), levels=4)
     with pytest.raises(Cancelled):
         mesh_within(pyramid, np.full(400, 0.01), lambda fraction: False)
+
+
+@pytest.mark.parametrize("strict", [0.5, 0.05])
+def test_what_a_moved_outline_left_outside_is_looked_for_once_it_is_inside(strict: float) -> None:
+    """Points outside the coarsest level were never located again, and so broke their limits."""
+    generator = np.random.default_rng(1)
+    radius, turn = np.sqrt(generator.random(400)), generator.random(400) * 2 * np.pi
+    ring = np.linspace(0, 2 * np.pi, 120, endpoint=False)
+    edge = 1 + 0.02 * generator.standard_normal(120)
+    plan = 100 * np.concatenate(
+        [
+            0.95 * np.column_stack([radius * np.cos(turn), radius * np.sin(turn)]),
+            np.column_stack([edge * np.cos(ring), edge * np.sin(ring)]),
+        ]
+    )
+    z = 5 * np.sin(plan[:, 0] / 15) + 5 * np.cos(plan[:, 1] / 11)
+    original = TriangleMesh.from_points(np.column_stack([plan, z]))
+    pyramid = analyse(original, norm="max", max_error=8.0, outline_tolerance=3.0)
+    limits = np.where(original.vertices[:, 0] > 0, strict, 8.0)
+    for found in (
+        mesh_within(pyramid, limits),
+        finished_within(pyramid, original, limits),
+        mesh_of_accuracy(pyramid, strict),
+    ):
+        errors = np.abs(surface_errors(found.mesh, original.vertices))
+        is_covered = np.isfinite(errors)
+        assert (errors[is_covered] <= limits[is_covered] * (1 + 1e-9)).all()
+        assert is_covered.sum() > 0.9 * original.n_vertices

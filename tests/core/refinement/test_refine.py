@@ -329,3 +329,13 @@ def test_bad_input_is_refused():
     flipped[0] = flipped[0, ::-1]
     with pytest.raises(MeshError, match="only a TIN"):
         refine(TriangleMesh(coarse.vertices, flipped), mesh, ids)
+
+
+@pytest.mark.parametrize("name", [ORACLE, "arrays"])
+def test_a_tolerance_of_nothing_somewhere_is_no_overflow(name):
+    mesh = synthetic.hills(12, 12)
+    limits = np.where(mesh.vertices[:, 0] > np.median(mesh.vertices[:, 0]), 0.0, 3.0)
+    pyramid = analyse(mesh, norm="max", max_error=3.0)
+    with engine(name):
+        tin = finished_within(pyramid, mesh, limits)
+    assert (np.abs(surface_errors(tin.mesh, mesh.vertices)) <= limits + 1e-12).all()

@@ -6,6 +6,7 @@ from gis.samples import hills, write_tif
 
 import wavelet_gis as wg
 from wavelet_core import TriangleMesh, synthetic
+from wavelet_gis.io.mesh.meshes import write_mesh
 from wavelet_gis.io.mesh.ugrid import write_ugrid
 
 
@@ -57,3 +58,18 @@ def test_simplify_writes_it(tmp_path):
     content = (tmp_path / "a.nc").read_bytes()
     assert content.startswith(b"CDF\x02")
     assert b"WGS 84 / UTM zone 32N" in content
+
+
+@pytest.mark.parametrize("suffix", [".nc", ".ply"])
+def test_attributes_whose_names_are_alike_are_both_there(suffix, tmp_path):
+    """Both became ``depth__m_``, and the second took the place of the first."""
+    mesh = synthetic.plane()
+    names = ("depth (m)", "depth [m]", "depth (m)_2")
+    attributes = np.random.default_rng(0).random((mesh.n_vertices, 3))
+    path = tmp_path / f"a{suffix}"
+    write_mesh(path, TriangleMesh(mesh.vertices, mesh.faces, attributes, names))
+    content = path.read_bytes()
+    order = ">f8" if suffix == ".nc" else "<f8"
+    for column in attributes.T:
+        assert column[3:4].astype(order).tobytes() in content
+    assert content.count(b"depth__m_") >= 3

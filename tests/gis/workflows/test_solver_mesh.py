@@ -15,6 +15,7 @@ from wavelet_core.errors import MissingDependencyError, OptionError
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.mesh.location import surface_errors
 from wavelet_gis.cli.main import main
+from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.workflows.solver.quality import quality_of
 from wavelet_gis.workflows.solver.solver_mesh import SolverRules, solver_mesh
 
@@ -99,6 +100,36 @@ def test_vertices_of_the_tin_are_no_nearer_than_the_shortest_edge(dem):
     assert len(ids) < 500
 
 
+def test_points_that_become_nodes_are_apart_from_each_other_too(dem):
+    """New ones were held against the nodes there were, not against each other."""
+    tin = wg.simplify(wg.open(dem), max_error=0.5)
+    with pytest.warns(TerrainWarning, match="nodes would be too near"):
+        made = tin.for_solver(min_angle=20.0, shortest_edge=25.0)
+    ids = made.vertex_ids[made.vertex_ids >= 0]
+    kept = tin.terrain.mesh.vertices[ids, :2]
+    x, y = kept.T
+    inner = (x > x.min()) & (x < x.max()) & (y > y.min()) & (y < y.max())
+    apart = np.linalg.norm(kept[:, None] - kept[None], axis=2) + np.diag(np.full(len(kept), 1e9))
+    assert apart[inner].min() >= 25.0
+
+
+def test_new_nodes_count_for_no_zone(dem):
+    """Their id -1 was taken for the last point of the input."""
+    terrain = wg.open(dem)
+    limits = np.full(terrain.mesh.n_vertices, 3.0)
+    limits[-1] = 2.0
+    made = wg.simplify(terrain, max_error=limits).for_solver()
+    known = np.unique(made.vertex_ids[made.vertex_ids >= 0])
+    assert sum(zone.n_vertices for zone in made.zones) == len(known)
+
+
+def test_a_long_list_of_short_edges_is_made(tin):
+    """40 times the nodes of the TIN were the most, whatever the longest edge asked for."""
+    flat = TriangleMesh([[0, 0, 0], [90, 0, 0], [90, 90, 0], [0, 90, 0]], [[0, 1, 2], [0, 2, 3]])
+    made = solver_mesh(flat, np.arange(4), flat, SolverRules(20.0, longest_edge=0.5))
+    assert made.mesh.n_vertices > 40_000
+
+
 def test_a_building_stays_a_hole_and_a_dike_stays_an_edge(dem, tmp_path):
     dike = shapely.LineString([(X + 40, Y - 60), (X + 200, Y - 210), (X + 440, Y - 350)])
     building = shapely.box(X + 300, Y - 150, X + 330, Y - 120)
@@ -178,6 +209,13 @@ def test_the_command(dem, tmp_path, capsys):
     assert figures["quality"]["smallest_angle"] >= 25 - 1e-6
     assert figures["max_error"] <= 3.0 + 1e-6
     assert output.read_text().count("E3T") == figures["n_triangles"]
+
+
+def test_the_command_refuses_before_the_work(dem, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("wavelet_gis.workflows.simplify.core_analyse", None)
+    words = ["simplify", str(dem), str(tmp_path / "a.2dm"), "--max-error", "3"]
+    assert main([*words, "--min-angle", "45"]) == 1
+    assert "--min-angle is 45" in capsys.readouterr().err
 
 
 def test_quality_of_triangles_drawn_by_hand():

@@ -13,7 +13,7 @@ import wavelet_gis as wg
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_gis.cli.main import main
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import CrsWarning, InputFileError
 from wavelet_gis.workflows.tolerance.by_place import tolerances
 
 X, Y = 500000.0, 5100000.0
@@ -170,7 +170,8 @@ class TestRefusals:
         [
             "__import__('os').system('true')", "().__class__", "z.real", "[1, 2][0]", "lambda: 1",
             "slope if z else 1", "open('x')", "z @ z", "w + 1", "'a' * 9", "min()", "no_such.tif",
-            "9 ** 9 ** 9 * 0", "(" * 500 + "1" + ")" * 500, "where(z)", "-1", "z - 1e9",
+            "9 ** 9 ** 9 * 0", "(" * 500 + "1" + ")" * 500, "where(z)", "-1", "slope > 20",
+            "sqrt(slope, z)", "abs(slope, z)", "log(slope, z)", "z - 1e9",
             "clip(z, a_min=1)", "True and z", "z < 1 < 2", "1j",
         ],
     )  # fmt: skip
@@ -206,6 +207,20 @@ class TestRefusals:
         ):
             with pytest.raises(OptionError):
                 wg.extract(analysis, **options)
+
+    def test_zones_beside_another_rule_are_named(self, terrain, zones):
+        with pytest.raises(OptionError, match="zones are of max_error"):
+            wg.simplify(terrain, vertices=50, zones=zones)
+
+    def test_a_negative_number_in_a_zone_is_that_of_the_field(self, terrain, tmp_path):
+        path = write_zones(tmp_path / "n.gpkg", [box(0, 0, 100, 100)], [-0.5])
+        with pytest.raises(InputFileError, match=r"holds -0\.5"):
+            tolerances(terrain, terrain.mesh, 1.0, path)
+
+    def test_a_raster_without_crs_is_told_of(self, terrain, tmp_path):
+        path = write_tif(tmp_path / "t.tif", np.ones((ROWS, COLUMNS), "float32"), crs=None)
+        with pytest.warns(CrsWarning, match="taken as they are"):
+            tolerances(terrain, terrain.mesh, path)
 
     def test_zones_that_tell_nothing(self, terrain, tmp_path):
         far = write_zones(tmp_path / "far.gpkg", [box(9000, 0, 9100, 10)], [0.5])

@@ -99,11 +99,17 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_gis.workflows.lines.errors import line_about
     from wavelet_gis.workflows.save import check_surface_output, save
     from wavelet_gis.workflows.simplify import simplify
+    from wavelet_gis.workflows.solver.delaunay import require_cgal
+    from wavelet_gis.workflows.solver.solver_mesh import SolverRules
 
     options = surface_options(arguments)
     check_surface_output(
         arguments.output, overwrite=arguments.overwrite, inputs=input_files(arguments), **options
     )
+    solver = _solver_options(arguments)
+    if solver:
+        require_cgal()
+        SolverRules(**solver).require_sense()
     began = perf_counter()
     terrain = open_given(arguments)
     with console.progress("simplifying") as progress:
@@ -120,7 +126,6 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             progress=progress,
             **{**wavelet_options(arguments), "norm": arguments.norm},
         )
-    solver = _solver_options(arguments)
     if solver:
         with console.progress("meshing") as progress:
             tin = tin.for_solver(progress=progress, **solver)

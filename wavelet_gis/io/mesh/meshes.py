@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import wavelet_core
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import OutputFileError
-from wavelet_gis.io.formats import MESH_SUFFIXES, any_of, mesh_format
+from wavelet_gis.io.formats import MESH_SUFFIXES, any_of, identifiers, mesh_format
 from wavelet_gis.io.read_back import recorded_stream, write_text
 
 __all__ = ["write_2dm", "write_mesh", "write_obj", "write_ply"]
@@ -61,7 +61,7 @@ def write_mesh(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | None
 
 def write_ply(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
     """Write a binary PLY: coordinates and attributes as doubles, faces as 32-bit indices."""
-    names = ["x", "y", "z", *(_identifier(name) for name in mesh.attribute_names)]
+    names = identifiers(["x", "y", "z", *mesh.attribute_names])
     header = [
         "ply",
         "format binary_little_endian 1.0",
@@ -109,12 +109,6 @@ def _write_lines(stream: IO[str], pattern: str, rows: NDArray[np.generic]) -> No
     for start in range(0, len(rows), _LINES_AT_ONCE):
         block = rows[start : start + _LINES_AT_ONCE]
         stream.write((pattern * len(block)) % tuple(block.ravel().tolist()))
-
-
-def _identifier(name: str) -> str:
-    """Return a property name without the blanks that would end it."""
-    cleaned = "".join(c if c.isalnum() and c.isascii() else "_" for c in name)
-    return cleaned or "attribute"
 
 
 def _software() -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 import wavelet_core
 from wavelet_core import TriangleMesh
 from wavelet_gis.errors import OutputFileError
+from wavelet_gis.io.formats import identifiers
 from wavelet_gis.io.read_back import recorded_stream
 
 __all__ = ["write_ugrid"]
@@ -107,11 +108,11 @@ def write_ugrid(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | Non
             cf_role="face_node_connectivity", long_name="Nodes of the faces",
             _FillValue=np.int32(-999), **connectivity,
         )  # fmt: skip
-        for name, values in zip(mesh.attribute_names, mesh.attributes.T, strict=True):
-            _add(
-                file, f"mesh2d_{_identifier(name)}", values.astype("f8"), ("mesh2d_nNodes",),
-                long_name=name, **on_map,
-            )  # fmt: skip
+        variables = identifiers(mesh.attribute_names, "mesh2d_attribute_")
+        for variable, name, values in zip(
+            variables, mesh.attribute_names, mesh.attributes.T, strict=True
+        ):
+            _add(file, variable, values.astype("f8"), ("mesh2d_nNodes",), long_name=name, **on_map)
         file.flush()
         content = buffer.getvalue()
     with recorded_stream(path) as stream:
@@ -131,8 +132,3 @@ def _edges(faces: NDArray[np.integer]) -> NDArray[np.integer]:
     """Return the edges of faces, each once, in a fixed order."""
     sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     return np.unique(sides, axis=0)
-
-
-def _identifier(name: str) -> str:
-    cleaned = "".join(c if c.isalnum() and c.isascii() else "_" for c in name)
-    return f"attribute_{cleaned}"

@@ -86,7 +86,7 @@ def labels_from_layer(
     path : path
         Any vector file that GDAL reads, in the CRS of the pyramid's input. Polygons label what is
         inside (the first one that covers a vertex); points label the nearest vertex, if it is no
-        farther than twice the median edge.
+        farther than twice the median edge, and of several the nearest counts.
     field : str
         Of whole numbers of 0 or more.
     layer : str, optional
@@ -191,6 +191,7 @@ def cloud_with_classes(
     for attribute in cloud.attributes:
         if attribute.dimension == "classification":
             values = attribute.values.copy()
+            _require_at_most(of_point, int(np.iinfo(values.dtype).max))
             values[changed] = of_point[changed]
             attribute = replace(attribute, values=values)
         attributes.append(attribute)
@@ -281,7 +282,8 @@ def _near_points(geo: GeoPyramid, shapes: NDArray[Any], classes: IntArray) -> In
     reach = 2 * float(level_spacings(geo.pyramid)[-1])
     distance, vertex = cKDTree(plan).query(local)
     labels = np.full(len(plan), NOT_KNOWN, dtype=np.int64)
-    near = distance <= reach
+    near = np.flatnonzero((distance <= reach) & (classes[owner] >= 0))
+    near = near[np.argsort(-distance[near], kind="stable")]  # the nearest has the last word
     labels[vertex[near]] = classes[owner[near]]
     return labels
 

@@ -14,7 +14,7 @@ from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError
 from wavelet_gis.notes import warn
 
-__all__ = ["LINES", "POINTS", "POLYGONS", "Place", "shapes_in_frame"]
+__all__ = ["LINES", "POINTS", "POLYGONS", "Place", "shapes_in_frame", "warn_of_one_crs"]
 
 FloatArray = NDArray[np.float64]
 Shapes = NDArray[Any]
@@ -41,6 +41,7 @@ def shapes_in_frame(
     option: str,
     kind: tuple[tuple[int, ...], str],
     field: str | None = None,
+    field_option: str = "field",
 ) -> tuple[Shapes, NDArray[Any] | None]:
     """Return the shapes of a file or a GeoDataFrame, and a field of theirs.
 
@@ -56,6 +57,8 @@ def shapes_in_frame(
         `POINTS`, `LINES` or `POLYGONS`.
     field : str, optional
         Whose values are wanted.
+    field_option : str
+        The parameter that names the field, for errors.
 
     Returns
     -------
@@ -104,7 +107,7 @@ def shapes_in_frame(
         if field not in table:
             raise InputFileError(
                 "{name}: there is no field {field!r}; name one with {0}.",
-                "zone_field",
+                field_option,
                 name=name,
                 field=field,
             )
@@ -125,6 +128,29 @@ def shapes_in_frame(
     return moved, None if values is None else values[is_shape]
 
 
+def warn_of_one_crs(name: str, there: CoordinateSystem, here: CoordinateSystem) -> None:
+    """Warn where only one of two sets of coordinates has a CRS.
+
+    Parameters
+    ----------
+    name : str
+        Of what is brought to the terrain.
+    there, here : CoordinateSystem
+        Its CRS, and that of the terrain.
+    """
+    if (there.wkt is None) != (here.wkt is None):
+        warn(
+            CrsWarning,
+            "shapes_taken_as_they_are",
+            "{name}: its CRS is {there} and that of the terrain {here}; x and y are taken as they "
+            "are",
+            stacklevel=5,
+            name=name,
+            there=there.name,
+            here=here.name,
+        )
+
+
 def _into_frame(place: Place, name: str, wkt: str | None) -> Callable[[FloatArray], FloatArray]:
     """Return the map from a layer's coordinates to the working frame."""
     from wavelet_gis.crs.lookup import coordinate_system
@@ -133,17 +159,7 @@ def _into_frame(place: Place, name: str, wkt: str | None) -> Callable[[FloatArra
     there: CoordinateSystem = coordinate_system(wkt)
     here = place.system
     is_moved = there.wkt is not None and here.wkt is not None and there.wkt != here.wkt
-    if (there.wkt is None) != (here.wkt is None):
-        warn(
-            CrsWarning,
-            "shapes_taken_as_they_are",
-            "{name}: its CRS is {there} and that of the terrain {here}; x and y are taken as they "
-            "are",
-            stacklevel=4,
-            name=name,
-            there=there.name,
-            here=here.name,
-        )
+    warn_of_one_crs(name, there, here)
 
     def move(coordinates: FloatArray) -> FloatArray:
         if not np.isfinite(coordinates[:, :2]).all() or np.isinf(coordinates[:, 2]).any():

@@ -12,7 +12,7 @@ from wavelet_core import Progress, TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import cover_of, surface_errors
 from wavelet_core.progress import part_of, report
-from wavelet_gis.workflows.solver.delaunay import LARGEST_MIN_ANGLE, Refinement
+from wavelet_gis.workflows.solver.delaunay import LARGEST_MIN_ANGLE, DelaunayRefiner
 
 __all__ = ["SolverMesh", "SolverRules", "solver_mesh"]
 
@@ -82,6 +82,7 @@ class SolverMesh(NamedTuple):
     vertex_ids : (n_vertices,) int64, the input vertex that each node is; -1 of new ones
     n_removed, n_added : int, vertices of the TIN that went, and nodes that came
     n_above : int, input vertices that are farther off than they may be
+    are_too_near : bool, whether those are so because nodes there would be too near to others
     """
 
     mesh: TriangleMesh
@@ -89,6 +90,7 @@ class SolverMesh(NamedTuple):
     n_removed: int
     n_added: int
     n_above: int
+    are_too_near: bool
 
 
 def solver_mesh(
@@ -145,16 +147,18 @@ def solver_mesh(
     kept = _apart(tin.vertices[:, :2], holds, rules.shortest_edge or 0.0)
     position = np.full(tin.n_vertices, -1)
     position[kept] = np.arange(len(kept))
-    work = Refinement(
+    work = DelaunayRefiner(
         tin.vertices[kept, :2] - origin,
         position[edges],
         _places_in_holes(tin, outline) - origin,
         rules.min_angle,
         rules.size_bound,
+        float(tin.plan_areas.sum()),
     )
     given = {tuple(place): int(vertex_ids[row]) for row, place in
              zip(kept, (tin.vertices[kept, :2] - origin).tolist(), strict=True)}  # fmt: skip
     plan = original.vertices[:, :2] - origin
+    worst = np.empty(0, dtype=np.int64)
     for number in range(MOST_ROUNDS + 1):
         part = part_of(progress, number / (MOST_ROUNDS + 1), (number + 1) / (MOST_ROUNDS + 1))
         work.refine(part)
@@ -170,7 +174,9 @@ def solver_mesh(
         work.add(plan[worst])
     report(progress, 1.0)
     n_known = int(np.count_nonzero(np.isin(ids, vertex_ids)))
-    return SolverMesh(mesh, ids, tin.n_vertices - n_known, mesh.n_vertices - n_known, len(missed))
+    return SolverMesh(
+        mesh, ids, tin.n_vertices - n_known, mesh.n_vertices - n_known, len(missed), len(worst) == 0
+    )
 
 
 # -- what is given to the refinement -------------------------------------------------------------
@@ -288,7 +294,7 @@ def _missed(mesh: TriangleMesh, original: TriangleMesh, limits: FloatArray | Non
 def _worst_apart(
     mesh: TriangleMesh, original: TriangleMesh, missed: IntArray, distance: float
 ) -> IntArray:
-    """Return of each face the worst of the points that are missed, apart from all nodes."""
+    """Return of each face the worst of the points missed, apart from all nodes and each other."""
     points = original.vertices[missed]
     cover = cover_of(mesh, points[:, :2])
     off = np.abs(surface_errors(mesh, points, cover))[cover.point]
@@ -300,4 +306,6 @@ def _worst_apart(
     if distance > 0:
         nearest = cKDTree(mesh.vertices[:, :2]).query(original.vertices[worst, :2])[0]
         worst = worst[nearest >= distance]
+        none = np.zeros(len(worst), dtype=bool)
+        worst = worst[_apart(original.vertices[worst, :2], none, distance)]
     return worst

@@ -14,7 +14,12 @@ from wavelet_core.errors import OptionError
 from wavelet_core.features.shape import surface_shape
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import Dem
-from wavelet_gis.workflows.lines.layer_shapes import POLYGONS, Place, shapes_in_frame
+from wavelet_gis.workflows.lines.layer_shapes import (
+    POLYGONS,
+    Place,
+    shapes_in_frame,
+    warn_of_one_crs,
+)
 from wavelet_gis.workflows.tolerance.formula import parsed, value_of
 
 __all__ = ["MaxError", "is_by_place", "tolerances", "values_in_cells"]
@@ -107,7 +112,14 @@ def _of_terrain(place: Place, mesh: TriangleMesh, max_error: MaxError) -> ArrayL
     if isinstance(max_error, str):
         formula = parsed(max_error)
         if formula is not None:
-            return value_of(formula, _variables(place, mesh), max_error)
+            value: ArrayLike = value_of(formula, _variables(place, mesh), max_error)
+            if np.asarray(value).dtype == bool:
+                raise OptionError(
+                    "{0} {text!r} is a comparison, not a distance; write where(condition, a, b).",
+                    "max_error",
+                    text=max_error,
+                )
+            return value
     if isinstance(max_error, str | os.PathLike):
         return _of_raster(place, mesh, max_error)
     values = np.asarray(max_error(mesh) if callable(max_error) else max_error)
@@ -151,7 +163,7 @@ def values_in_cells(dem: Dem, x: FloatArray, y: FloatArray) -> FloatArray:
         Places in its CRS.
     """
     columns, rows = dem.geometry.cells(x, y)
-    column, row = np.rint(columns), np.rint(rows)
+    column, row = np.rint(columns), np.rint(rows)  # NaN is in none
     n_rows, n_columns = dem.values.shape
     inside = (column >= 0) & (column < n_columns) & (row >= 0) & (row < n_rows)
     at = row[inside].astype(np.int64), column[inside].astype(np.int64)
@@ -170,6 +182,7 @@ def _of_raster(place: Place, mesh: TriangleMesh, path: str | os.PathLike[str]) -
     dem, told = read_dem(path)
     x, y = place.frame.to_file(mesh.vertices)[:, :2].T
     there = coordinate_system(told.wkt)
+    warn_of_one_crs(os.fspath(path), there, place.system)
     if there.wkt is not None and place.system.wkt is not None and there.wkt != place.system.wkt:
         x, y = projected(place.system, there, x, y)
     values = values_in_cells(dem, x, y)
@@ -186,7 +199,8 @@ def _set_in_zones(
 ) -> None:
     import shapely
 
-    shapes, given = shapes_in_frame(place, zones, "zones", POLYGONS, field)
+    name = os.fspath(zones) if isinstance(zones, str | os.PathLike) else type(zones).__name__
+    shapes, given = shapes_in_frame(place, zones, "zones", POLYGONS, field, "zone_field")
     assert given is not None
     try:
         values = np.array([np.nan if value is None else float(value) for value in given])
@@ -194,9 +208,17 @@ def _set_in_zones(
         raise InputFileError(
             "{name}: field {field!r} does not hold numbers; name another with {0}.",
             "zone_field",
-            name=zones if isinstance(zones, str | os.PathLike) else type(zones).__name__,
+            name=name,
             field=field,
         ) from error
+    if (values < 0).any():
+        raise InputFileError(
+            "{name}: field {field!r} holds {value:g}; largest errors are 0 or more ({0}).",
+            "zone_field",
+            name=name,
+            field=field,
+            value=float(np.nanmin(values)),
+        )
     x, y = mesh.vertices[:, :2].T
     tree = shapely.STRtree(shapely.points(x, y))
     n_inside = 0
@@ -211,6 +233,6 @@ def _set_in_zones(
         raise InputFileError(
             "{name}: no input point lies in a zone with a number in {field!r}; check the extent, "
             "the CRS and the field.",
-            name=os.fspath(zones) if isinstance(zones, str | os.PathLike) else "the zones",
+            name=name,
             field=field,
         )

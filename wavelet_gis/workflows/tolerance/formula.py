@@ -16,15 +16,15 @@ __all__ = ["parsed", "value_of"]
 
 FloatArray = NDArray[np.float64]
 
-#: What a formula may call.
+#: What a formula may call; by functions of ours, since numpy's write into a second argument.
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "abs": np.abs,
-    "clip": np.clip,
-    "exp": np.exp,
-    "log": np.log,
+    "abs": lambda value: np.abs(value),
+    "clip": lambda value, least, most: np.clip(value, least, most),
+    "exp": lambda value: np.exp(value),
+    "log": lambda value: np.log(value),
     "max": lambda *values: np.maximum.reduce(np.broadcast_arrays(*values)),
     "min": lambda *values: np.minimum.reduce(np.broadcast_arrays(*values)),
-    "sqrt": np.sqrt,
+    "sqrt": lambda value: np.sqrt(value),
     "where": lambda condition, then, otherwise: np.where(condition, then, otherwise),
 }
 _OPERATORS: dict[type, Callable[..., Any]] = {

@@ -48,7 +48,7 @@ def zone_errors(
     mesh : TriangleMesh
         The surface.
     vertex_ids : (n_vertices,) int64
-        Input vertices that it has.
+        Input vertices that it has; -1 of nodes that are none.
     points : (n_points, 3) float64
         The input vertices.
     limits : (n_points,) float64
@@ -63,7 +63,7 @@ def zone_errors(
         octave = np.floor(np.log2(np.maximum(limits, np.finfo(float).tiny)))
         zone = np.searchsorted(np.unique(octave), octave)
     is_vertex = np.zeros(len(points), dtype=bool)
-    is_vertex[vertex_ids] = True
+    is_vertex[vertex_ids[vertex_ids >= 0]] = True
     rows = []
     for number in range(int(zone.max(initial=-1)) + 1):
         inside = zone == number
