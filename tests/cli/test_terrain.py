@@ -1,8 +1,15 @@
 """The command that writes tiles for globes."""
 
 import json
+import os
+import warnings
 
+import pytest
+import rasterio
 from gis.samples import hills, write_las, write_tif
+
+from wavelet_gis.errors import CrsError
+from wavelet_gis.io.atomic import new_folder
 
 
 def test_tiles_of_a_dem_and_of_its_pyramid(done, tmp_path):
@@ -38,3 +45,49 @@ def test_a_pyramid_refuses_what_is_for_other_input(done, refused, tmp_path):
         message = refused("terrain", pyramid, tmp_path / "out", flag, value)
         assert flag in message
         assert "leave it out" in message
+
+
+@pytest.mark.parametrize("words", [("--fill", "nan"), ("--fill", "inf")])
+def test_a_height_that_is_none_is_refused(refused, tmp_path, words):
+    dem = write_tif(tmp_path / "dem.tif", hills(12, 12))
+    assert "--fill is" in refused("terrain", dem, tmp_path / "out", *words)
+
+
+@pytest.mark.parametrize(
+    ("crs", "west", "cell"), [("EPSG:4326", 179.99, 0.001), ("EPSG:3994", -8.7e6, 500.0)]
+)
+def test_terrain_on_both_sides_of_180_degrees_is_refused(tmp_path, crs, west, cell):
+    """It gave 16,378 tiles around the earth instead of a few."""
+    import wavelet_gis as wg
+
+    if crs == "EPSG:3994":
+        from pyproj import Transformer
+
+        west = (
+            Transformer.from_crs(4326, crs, always_xy=True).transform(180.0, -30.0)[0] - 10 * cell
+        )
+    place = rasterio.Affine(cell, 0.0, west, 0.0, -cell, 10.0 if cell < 1 else -2.6e6)
+    path = write_tif(tmp_path / "dem.tif", hills(20, 20), crs=crs, transform=place)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        terrain = wg.open(path)
+        with pytest.raises(CrsError, match="both sides of longitude 180"):
+            wg.terrain_tiles(terrain, tmp_path / "out")
+
+
+def test_a_set_that_cannot_take_its_place_leaves_the_old_one(tmp_path, monkeypatch):
+    """The old folder had been moved away already, and was lost."""
+    target = tmp_path / "out"
+    target.mkdir()
+    (target / "layer.json").write_text("old")
+    replace = os.replace
+
+    def fails(source, destination):
+        if os.path.abspath(destination) == str(target) and os.path.basename(source) == "out":
+            raise PermissionError("held by another program")
+        replace(source, destination)
+
+    monkeypatch.setattr(os, "replace", fails)
+    with pytest.raises(PermissionError), new_folder(target, "layer.json", overwrite=True) as made:
+        (made / "layer.json").write_text("new")
+    assert (target / "layer.json").read_text() == "old"

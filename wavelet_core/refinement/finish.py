@@ -73,8 +73,8 @@ def finished(
 
     Notes
     -----
-    A level that keeps a tolerance by the ``"rms"`` norm or with an update has heights that are
-    neither the input's nor free to change: it stays as it is.
+    A level that keeps a tolerance by the ``"rms"`` norm or with an update stays as it is: fitted
+    heights, and those of the input where an update has moved them, might break the tolerance.
     """
     parameters = pyramid.parameters
     mesh, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
@@ -89,9 +89,9 @@ def finished(
         )
     locked = None if pyramid.locked is None else pyramid.locked[ids]
     cover = cover_of(mesh, original.vertices[:, :2])
-    if rounds is None:
-        rounds = None if parameters["partition"] == "surface" else 0
-        rounds = 0 if stays or parameters["signal"] != "z" else rounds
+    pays = parameters["partition"] == "surface" and parameters["signal"] == "z" and not stays
+    if rounds is None and not pays:
+        rounds = 0
     if rounds != 0:
         return _refined(pyramid, original, mesh, ids, cover, rounds, keep_points, progress)
     if keep_points and not stays:

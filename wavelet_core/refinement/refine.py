@@ -286,7 +286,7 @@ class _Work:
             n_removed = self._thin() if number > 0 else 0
             state = self._state.snapshot()
             self._improve(number, most, n_removed=n_removed)
-            if self._budget() < 0:  # as above
+            if self._budget() < 0:  # where other channels gained what z lost
                 self._state = state
                 self.rounds.pop()
                 self._note(0, 0, 0, n_removed)

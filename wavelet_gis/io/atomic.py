@@ -201,9 +201,15 @@ def new_folder(
         yield folder
         if not (folder / marker).is_file():
             raise OutputFileError(f"{target}: no {marker} was written; please report this.")
-        if target.is_dir():
-            os.replace(target, scratch / "replaced")
-        os.replace(folder, target)
+        aside = scratch / "replaced"
+        try:
+            if target.is_dir():
+                os.replace(target, aside)
+            os.replace(folder, target)
+        except BaseException:
+            if aside.is_dir() and not target.exists():
+                os.replace(aside, target)
+            raise
 
 
 def _exists(target: Path) -> bool:

@@ -17,11 +17,11 @@ from wavelet_gis.io.geopackage import check_database, check_rows
 from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.tiles.piece import PIECES, read_record
-from wavelet_gis.tiles.plan import Piece, TilePlan
+from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
 
-__all__ = ["INDEX", "PLAN", "TileIndex", "is_index", "open_index", "write_index"]
+__all__ = ["INDEX", "TileIndex", "is_index", "open_index", "write_index"]
 
-INDEX, PLAN = "index.gpkg", "plan.json"
+INDEX = "index.gpkg"
 
 
 @dataclass(frozen=True, slots=True)

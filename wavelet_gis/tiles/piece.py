@@ -31,7 +31,7 @@ from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected
-from wavelet_gis.tiles.plan import Piece, TilePlan
+from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
 from wavelet_gis.workflows.analyse import analyse
 from wavelet_gis.workflows.save import write_pyramid_file
 
@@ -61,15 +61,13 @@ class Joined(NamedTuple):
     integrals: NDArray[np.float64]
 
 
-def make_piece(folder: str, plan_text: str, piece: Piece, inputs: dict[str, str]) -> dict[str, Any]:
+def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, Any]:
     """Make the pyramid of a piece and its record; return the record.
 
     Parameters
     ----------
     folder : str
-        Of the tile set.
-    plan_text : str
-        See `TilePlan.to_json`.
+        Of the tile set, with its plan.
     piece : Piece
     inputs : dict of str to str
         What it is made from, and a checksum or the like of each, for the record.
@@ -79,7 +77,8 @@ def make_piece(folder: str, plan_text: str, piece: Piece, inputs: dict[str, str]
     Both files are written aside and renamed, the record last: whoever finds it finds the whole.
     What is wrong with a piece is told in the record, which then names no file.
     """
-    plan = TilePlan.from_json(plan_text, folder)
+    path = Path(folder) / PLAN
+    plan = TilePlan.from_json(path.read_text("utf-8"), str(path))
     began = perf_counter()
     record: dict[str, Any] = {
         "stage": piece.stage,

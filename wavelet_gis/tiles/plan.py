@@ -21,7 +21,10 @@ from wavelet_gis.io.names import files_of, gdal_path, told_as_one
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.terrain import frame_of_bounds
 
-__all__ = ["LEVELS", "TILE", "Piece", "SourceFile", "TilePlan", "plan_of_rasters"]
+__all__ = ["LEVELS", "PLAN", "TILE", "Piece", "SourceFile", "TilePlan", "plan_of_rasters"]
+
+#: The file of a tile set that holds its plan.
+PLAN = "plan.json"
 
 #: Cells along the side of a tile.
 TILE = 1024

@@ -1,6 +1,6 @@
 """Where the pieces are made: in this process, in others beside it, or on a Dask scheduler.
 
-Few fat tasks, a wave of them for each stage; what passes from one to the next are files, not
+Few fat tasks, in waves, for each stage its own; what passes from one to the next are files, not
 results in memory. A task that is lost, with its worker or its scheduler, is done again from its
 inputs, and so is one that was half done: its files are written aside.
 """
@@ -18,11 +18,15 @@ from typing import Any
 from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.tiles.piece import make_piece
+from wavelet_gis.tiles.plan import Piece
 
 __all__ = ["Job", "records_of", "require_dask"]
 
 #: Arguments of `wavelet_gis.tiles.piece.make_piece`.
-Job = tuple[str, str, Any, dict[str, str]]
+Job = tuple[str, Piece, dict[str, str]]
+
+#: Tasks that a scheduler is given at once; some 50,000 alive are known to stall one.
+_WAVE = 10_000
 
 #: Times that all workers may be lost without a piece being made in between.
 _MOST_LOSSES = 5
@@ -49,7 +53,8 @@ def records_of(
         A scheduler is named and dask is not installed.
     """
     if scheduler is not None:
-        yield from _on_dask(jobs, scheduler)
+        for start in range(0, len(jobs), _WAVE):
+            yield from _on_dask(jobs[start : start + _WAVE], scheduler)
     elif workers == 1 or len(jobs) == 1:
         for job in jobs:
             yield make_piece(*job)

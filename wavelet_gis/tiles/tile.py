@@ -14,9 +14,9 @@ from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_text
 from wavelet_gis.notes import warn
-from wavelet_gis.tiles.index import INDEX, PLAN, TileIndex, open_index, write_index
+from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
 from wavelet_gis.tiles.piece import PIECES, read_record, sha256_of
-from wavelet_gis.tiles.plan import LEVELS, TILE, Piece, TilePlan, plan_of_rasters
+from wavelet_gis.tiles.plan import LEVELS, PLAN, TILE, Piece, TilePlan, plan_of_rasters
 from wavelet_gis.tiles.runner import Job, records_of, require_dask
 
 __all__ = ["Tiled", "tile_rasters"]
@@ -136,7 +136,7 @@ def tile_rasters(
                 if on_piece is not None:
                     on_piece(record, n_made + n_found, n_total)
             else:
-                jobs.append((str(place), plan.to_json(), piece, inputs))
+                jobs.append((str(place), piece, inputs))
         for record in records_of(jobs, workers, scheduler):
             n_made += 1
             if on_piece is not None:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.point_faces import (
+    SortedEdges,
     near_pairs,
     sorted_edges,
     triangles_of,
@@ -60,20 +61,13 @@ def encode_faces(points: NDArray[np.int64], faces: NDArray[np.integer]) -> FaceR
         return None
     n = len(points)
     x, y = _local(points)
-    pairs = near_pairs(x, y, N_NEAREST)
-    corners = faces.astype(np.int32)
-    sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    edges = sorted_edges(sides, n)
-    joined, is_told = edges.are_joined(pairs)
+    edges = sorted_edges(_sides(faces), n)
+    answers, far = _told_by(x, y, edges)
     triangles = triangles_of(x, y, edges)
     is_face = _are_among(faces, triangles, n)
     if np.count_nonzero(is_face) != len(faces) or not np.array_equal(triangles[is_face], faces):
         return None
-    return FaceRecord(
-        tuple(joined[pairs.classes == of_class] for of_class in range(N_EDGE_CLASSES)),
-        edges.rows()[~is_told],
-        np.flatnonzero(~is_face).astype(np.int64),
-    )
+    return FaceRecord(answers, far, np.flatnonzero(~is_face).astype(np.int64))
 
 
 def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.int64]:
@@ -91,8 +85,37 @@ def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.in
         It tells no faces on these points.
     """
     _require(_may_be_told(points), "points that have no faces")
-    n = len(points)
     x, y = _local(points)
+    edges = _edges_from(x, y, record)
+    triangles = triangles_of(x, y, edges)
+    is_face = np.ones(len(triangles), dtype=bool)
+    holes = record.holes
+    _require(
+        holes.size == 0 or bool(holes.min() >= 0 and holes.max() < len(triangles)),
+        "a hole in no triangle",
+    )
+    is_face[holes] = False
+    return triangles[is_face].astype(np.int64)
+
+
+def _sides(faces: NDArray[np.integer]) -> NDArray[np.int32]:
+    corners = faces.astype(np.int32)
+    return np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
+
+
+def _told_by(
+    x: NDArray[np.float64], y: NDArray[np.float64], edges: SortedEdges
+) -> tuple[tuple[NDArray[np.uint8], ...], NDArray[np.int32]]:
+    """Return the answers to all questions, and the edges that nobody asks about."""
+    pairs = near_pairs(x, y, N_NEAREST)
+    joined, is_told = edges.are_joined(pairs)
+    answers = tuple(joined[pairs.classes == of_class] for of_class in range(N_EDGE_CLASSES))
+    return answers, edges.rows()[~is_told]
+
+
+def _edges_from(x: NDArray[np.float64], y: NDArray[np.float64], record: FaceRecord) -> SortedEdges:
+    """Return the edges that a record of any origin tells."""
+    n = len(x)
     pairs = near_pairs(x, y, N_NEAREST)
     joined = np.zeros(pairs.classes.shape, dtype=bool)
     for of_class, answers in enumerate(record.answers):
@@ -109,16 +132,7 @@ def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.in
     _require(int(np.count_nonzero(joined)) + len(far) <= 3 * n, "more edges than a surface has")
     tail, place = np.nonzero(joined)
     near = np.column_stack([tail.astype(np.int32), pairs.nearest[tail, place]])
-    edges = sorted_edges(np.concatenate([near, far.astype(np.int32)]), n)
-    triangles = triangles_of(x, y, edges)
-    is_face = np.ones(len(triangles), dtype=bool)
-    holes = record.holes
-    _require(
-        holes.size == 0 or bool(holes.min() >= 0 and holes.max() < len(triangles)),
-        "a hole in no triangle",
-    )
-    is_face[holes] = False
-    return triangles[is_face].astype(np.int64)
+    return sorted_edges(np.concatenate([near, far.astype(np.int32)]), n)
 
 
 def _may_be_told(points: NDArray[np.int64]) -> bool:

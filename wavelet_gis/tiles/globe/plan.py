@@ -80,6 +80,10 @@ def plan_tiles(
     OptionError
         A zoom or an error that the format cannot hold.
     """
+    if not math.isfinite(fill):
+        raise OptionError("{0} is {given}; give a height.", "fill", given=fill)
+    if max_error is not None and not math.isfinite(max_error):
+        raise OptionError("{0} is {given}; give a distance.", "max_error", given=max_error)
     spacing = _spacing(globe)
     if zoom is None:
         wanted = math.log2(180.0 / (POINTS_ACROSS * math.degrees(spacing / EARTH_RADIUS)))

@@ -1,7 +1,7 @@
 """The surface that a globe is tiled from: a TIN in steps of the finest zoom, and what is around it.
 
 Outside its outline the surface goes on level for one spacing of its vertices, falls (or rises) to
-the height of filling over the next, and stays there; so the step is beside the data, not in them.
+the height of filling over some more, and stays there; so the slope is beside the data, not in them.
 Holes inside are spanned by triangles between the vertices of their rims.
 """
 
@@ -21,6 +21,10 @@ from wavelet_gis.tiles.globe.tile_grid import STEPS, Tile, steps_of_degrees
 __all__ = ["GlobePoints", "SourceSurface", "source_surface"]
 
 FloatArray = NDArray[np.float64]
+
+#: Spacings outside the outline at which the ground has come to the height of filling: so many that
+#: rounding to the steps of coarse zooms is little against the slope.
+FALL = 8
 
 
 class GlobePoints(NamedTuple):
@@ -125,7 +129,7 @@ def _outline(faces: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:
 
 
 def _ring(tin: TriangleMesh, fill: float) -> FloatArray:
-    """Return places one and two spacings outside the outer outlines, the latter at the filling."""
+    """Return places around the outer outlines: beside them, and where the filling begins."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -151,7 +155,7 @@ def _ring(tin: TriangleMesh, fill: float) -> FloatArray:
     size = np.linalg.norm(normal[rim], axis=1, keepdims=True)
     rim, normal = rim[size[:, 0] > 1e-6], (normal[rim] / np.maximum(size, 1e-6))[size[:, 0] > 1e-6]
     spacing = np.sqrt(tin.plan_areas.sum() / tin.n_vertices)
-    near, far = (np.rint(plan[rim] + k * spacing * normal) for k in (1, 2))
+    near, far = (np.rint(plan[rim] + k * spacing * normal) for k in (1, FALL))
     ring = np.concatenate(
         [
             np.column_stack([near, tin.vertices[rim, 2]]),

@@ -170,7 +170,7 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
     Raises
     ------
     CrsError
-        Without a CRS that tells the place on earth.
+        Without a CRS that tells the place on earth, or where that is on both sides of 180 degrees.
     """
     if isinstance(data, Terrain):
         mesh, name = data.mesh, data.name
@@ -186,6 +186,12 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
     longitude, latitude = projected(
         data.system, coordinate_system("EPSG:4326"), places[:, 0], places[:, 1]
     )
+    if np.ptp(longitude) > 180.0 or np.abs(longitude).max(initial=0.0) > 180.0:
+        raise CrsError(
+            "{name}: the terrain lies on both sides of longitude 180; cut it there, and make tiles "
+            "of each part.",
+            name=name,
+        )
     is_geographic = data.system.kind == "geographic"
     metres = mesh.vertices[:, 2] * (1.0 if is_geographic else data.system.horizontal_unit)
     return GlobePoints(longitude, latitude, metres, mesh.faces)

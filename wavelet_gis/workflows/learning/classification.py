@@ -14,14 +14,11 @@ from numpy.typing import NDArray
 from wavelet_core.errors import OptionError
 from wavelet_core.features.signature import Signature
 from wavelet_core.progress import Progress, part_of, report
+from wavelet_gis.workflows.learning._blocks import FloatArray, IntArray, blocks_of, sample_of
 from wavelet_gis.workflows.learning._scikit_learn import (
-    FloatArray,
-    IntArray,
-    blocks_of,
     few_threads,
     half_of_the_cores,
     require_sklearn,
-    sample_of,
 )
 
 __all__ = ["Classes", "Validation", "learn_classes", "spatial_folds", "validate_classes"]

@@ -16,12 +16,7 @@ from wavelet_core.lifting.spacings import level_spacings
 from wavelet_core.progress import Progress, part_of, report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.vertex_tables import energy_columns
-from wavelet_gis.workflows.learning._scikit_learn import (
-    FloatArray,
-    IntArray,
-    blocks_of,
-    sample_of,
-)
+from wavelet_gis.workflows.learning._blocks import FloatArray, IntArray, blocks_of, sample_of
 from wavelet_gis.workflows.learning.means import fit_means, fit_mixture
 
 __all__ = ["CLUSTERINGS", "Clustering", "Clusters", "cluster_summary", "cluster_vertices"]

@@ -200,7 +200,7 @@ def _analysed_without(
 def _is_copy(values: NDArray[np.float64], given: IntArray) -> bool:
     known = given >= 0
     numbers = np.rint(values[known])
-    if not np.allclose(numbers, values[known], atol=1e-6):
+    if not np.allclose(numbers, values[known], rtol=0.0, atol=1e-6):
         return False
     names, value_of = np.unique(numbers, return_inverse=True)
     if not 2 <= len(names) <= MAX_VALUES_OF_COPY:
