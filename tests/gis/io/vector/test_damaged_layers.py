@@ -110,5 +110,5 @@ def test_a_number_with_a_comment_mark_in_it_is_no_shorter_number(tmp_path):
     path.write_text(text.partition("\n")[2].replace("309.000", "309.#00"))
     assert "309.#00" in one_line(path)
     path = tmp_path / "points.xyz"
-    path.write_text("# a survey\n" + "\n".join(rows).replace(",", " ") + "\n")
+    path.write_text("\n# of a hill\n".join(rows).replace(",", " ") + "\n")
     assert len(read_point_table(path).points) == 16
