@@ -189,7 +189,7 @@ def input_from_parts(contents: Contents, arrays: StoredArrays) -> GeoPyramid:
         channels=("z", *mesh.attribute_names),
         signal="z",
         update=described.text("update"),
-        parameters=dict(described.fields("parameters")),
+        parameters=_parameters_from(described),
     )
     return _geo_pyramid(contents, pyramid, origin, frame)
 
@@ -339,6 +339,21 @@ def _are_measured(levels: tuple[LevelErrors, ...]) -> bool:
     return all(math.isfinite(value) for level in levels for value in level)
 
 
+def _parameters_from(described: Fields) -> dict[str, Any]:
+    """Return the parameters, those checked by which the pyramid is written again."""
+    parameters = described.fields("parameters")
+    if "outline_tolerance" in parameters and parameters.number("outline_tolerance") < 0:
+        raise parameters.fault("a tolerance below 0")
+    if "attribute_weights" in parameters:
+        weights = parameters["attribute_weights"]
+        is_list = isinstance(weights, (list, tuple))
+        if not is_list or not all(
+            type(weight) in (int, float) and 0 <= weight < 1e300 for weight in weights
+        ):
+            raise parameters.fault("weights of attributes that are no numbers from 0 up")
+    return dict(parameters)
+
+
 def _from_lists(
     contents: Contents, arrays: StoredArrays, origin: Origin, frame: LocalFrame
 ) -> Pyramid:
@@ -377,7 +392,7 @@ def _from_lists(
         signal=signal,
         update=described.text("update"),
         locked=locked,
-        parameters=dict(described.fields("parameters")),
+        parameters=_parameters_from(described),
         stop=_stop_from(described),
     )
     n_vertices = pyramid.n_vertices(pyramid.n_levels)

@@ -62,14 +62,17 @@ def read_point_table(path: str | os.PathLike[str], attributes: tuple[str, ...] =
     has_names = not all(map(_is_number, words))
     columns = _columns(name, words if has_names else [], attributes)
     try:
-        values = np.loadtxt(
-            name,
-            delimiter=separator,
-            skiprows=int(has_names),
-            usecols=columns,
-            ndmin=2,
-            encoding="utf-8-sig",
-        )
+        with Path(path).open(encoding="utf-8-sig") as stream:
+            # Only whole lines are comments: a damaged "301.#94" is no 301.
+            lines = (line for line in stream if not line.lstrip().startswith("#"))
+            values = np.loadtxt(
+                lines,
+                delimiter=separator,
+                comments=None,
+                skiprows=int(has_names and not first.lstrip().startswith("#")),
+                usecols=columns,
+                ndmin=2,
+            )
     except (ValueError, IndexError) as error:
         raise InputFileError(
             f"{name}: this is not a table of numbers by column ({error}); give x, y and z in every "

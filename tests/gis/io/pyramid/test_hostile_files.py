@@ -544,3 +544,22 @@ def test_faces_that_are_no_surface(damaged, faces):
 def test_residuals_of_another_raster(damaged, array):
     with pytest.raises(PyramidError):
         read_pyramid(damaged(*replace_array("source/residuals", array))).restore()
+
+
+@listed
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("outline_tolerance", '""'), ("outline_tolerance", "-1"), ("attribute_weights", '"7"'),
+     ("attribute_weights", "[null]")],
+)  # fmt: skip
+def test_a_parameter_by_which_a_pyramid_is_written_again_is_a_number(damaged, name, value):
+    """Such a file was read, and a traceback came when what was read was written again."""
+    path = damaged(
+        f"UPDATE wavelet_metadata SET value = json_set(value, '$.parameters.{name}', "
+        f"json('{value}')) WHERE name = 'pyramid'"
+    )
+    with pytest.raises(
+        PyramidError, match="tolerance" if "tolerance" in name else "weights"
+    ) as caught:
+        read_pyramid(path)
+    assert "\n" not in str(caught.value)

@@ -8,6 +8,7 @@ import shapely
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import MeshError
 from wavelet_gis.errors import InputFileError, LayerWarning
+from wavelet_gis.io.vector.point_table import read_point_table
 from wavelet_gis.workflows.open import open_input
 
 TRIANGLE = [[5e5, 5.1e6, 300.0], [500010.0, 5.1e6, 301.0], [5e5, 5100010.0, 302.0]]
@@ -97,3 +98,17 @@ def test_points_that_the_triangulation_takes_for_equal_are_refused_in_one_line()
         assert "\n" not in str(error)  # noqa: PT017
     else:
         assert mesh.n_vertices == 4
+
+
+def test_a_number_with_a_comment_mark_in_it_is_no_shorter_number(tmp_path):
+    """``301.#94`` was read as 301 without a word; lines that begin with the mark are comments."""
+    rows = [f"{x:.1f},{y:.1f},{300 + x * y:.3f}" for x in range(4) for y in range(4)]
+    text = "# a survey\nx,y,z\n# of a hill\n" + "\n".join(rows) + "\n"
+    path = tmp_path / "points.csv"
+    path.write_text(text.partition("\n")[2])
+    assert len(read_point_table(path).points) == 16
+    path.write_text(text.partition("\n")[2].replace("309.000", "309.#00"))
+    assert "309.#00" in one_line(path)
+    path = tmp_path / "points.xyz"
+    path.write_text("\n# of a hill\n".join(rows).replace(",", " ") + "\n")
+    assert len(read_point_table(path).points) == 16
