@@ -306,12 +306,11 @@ class _Heights:
         moved, movers, predicted, parents = [], [], [], []
         for level, pair in enumerate(self._filters):
             of_level = self._ids[level + 1]
-            even, odd = pair.update.tocoo().coords
-            moved.append(of_level[pair.even[even]])
-            movers.append(of_level[pair.odd[odd]])
-            odd, even = pair.prediction.tocoo().coords
-            predicted.append(of_level[pair.odd[odd]])
-            parents.append(of_level[pair.even[even]])
+            shares, weights = pair.update.tocoo(), pair.prediction.tocoo()
+            moved.append(of_level[pair.even[shares.row]])
+            movers.append(of_level[pair.odd[shares.col]])
+            predicted.append(of_level[pair.odd[weights.row]])
+            parents.append(of_level[pair.even[weights.col]])
         self._movers = _relation(moved, movers, n_vertices)
         self._parents = _relation(predicted, parents, n_vertices)
 
