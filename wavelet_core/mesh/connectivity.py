@@ -18,6 +18,7 @@ __all__ = [
     "PINCH",
     "Connectivity",
     "build_connectivity",
+    "edges_of",
     "stars_of",
 ]
 
@@ -49,6 +50,32 @@ class Connectivity(NamedTuple):
         """Return the ordered neighbours of one vertex."""
         base = self.star_indptr[vertex] + vertex
         return self.ring[base : base + self.ring_size[vertex]]
+
+
+def edges_of(faces: NDArray[np.integer]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the edges of faces, each once.
+
+    Parameters
+    ----------
+    faces : ndarray of int, shape (n_faces, 3)
+        Faces.
+
+    Returns
+    -------
+    edges : ndarray of int64, shape (n_edges, 2)
+        The lower vertex first, in ascending order.
+    n_faces : ndarray of int64, shape (n_edges,)
+        How many faces have each: 1 on the outline, 2 within.
+
+    Examples
+    --------
+    >>> edges, n_faces = edges_of(np.array([[0, 1, 2], [2, 1, 3]]))
+    >>> edges.tolist(), n_faces.tolist()
+    ([[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]], [1, 1, 2, 1, 1])
+    """
+    sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges, n_faces = np.unique(sides, axis=0, return_counts=True)
+    return edges.astype(np.int64), n_faces
 
 
 def stars_of(

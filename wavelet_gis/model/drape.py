@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from wavelet_core import TriangleMesh
+from wavelet_core.mesh.connectivity import edges_of
 from wavelet_core.mesh.location import surface_errors
 
 __all__ = ["Draped", "default_tolerance", "drape"]
@@ -106,8 +107,7 @@ class _Cutter:
     """
 
     def __init__(self, mesh: TriangleMesh) -> None:
-        pairs = mesh.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        edges = np.unique(np.sort(pairs, axis=1), axis=0)
+        edges = edges_of(mesh.faces)[0]
         self._a, self._b = mesh.vertices[edges[:, 0]], mesh.vertices[edges[:, 1]]
         length = np.hypot(*(self._b - self._a)[:, :2].T)
         doublings = np.floor(np.log2(np.maximum(length, np.finfo(float).tiny))).astype(np.int64)

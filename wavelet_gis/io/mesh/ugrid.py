@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import wavelet_core
 from wavelet_core import TriangleMesh
+from wavelet_core.mesh.connectivity import edges_of
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.formats import identifiers
 from wavelet_gis.io.read_back import recorded_stream
@@ -57,7 +58,7 @@ def write_ugrid(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | Non
     with netcdf_file(buffer, "w", version=2) as file:
         file.Conventions = "CF-1.8 UGRID-1.0 Deltares-0.10"
         file.source = f"terrain-wavelets {wavelet_core.__version__}"
-        edges = _edges(mesh.faces)
+        edges = edges_of(mesh.faces)[0]
         for name, size in (
             ("mesh2d_nNodes", mesh.n_vertices),
             ("mesh2d_nEdges", len(edges)),
@@ -126,9 +127,3 @@ def _add(
     variable.data[...] = values  # scipy's own assignment knows no scalars
     for key, value in attributes.items():
         setattr(variable, key, value.encode("utf-8") if isinstance(value, str) else value)
-
-
-def _edges(faces: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Return the edges of faces, each once, in a fixed order."""
-    sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    return np.unique(sides, axis=0)

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from wavelet_core import Progress, TriangleMesh
 from wavelet_core.errors import OptionError
+from wavelet_core.mesh.connectivity import edges_of
 from wavelet_core.mesh.location import cover_of, surface_errors
 from wavelet_core.progress import part_of, report
 from wavelet_gis.workflows.solver.delaunay import LARGEST_MIN_ANGLE, DelaunayRefiner
@@ -184,9 +185,8 @@ def solver_mesh(
 
 def _outline(faces: NDArray[np.integer]) -> IntArray:
     """Return the edges of one face only."""
-    sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges, counts = np.unique(sides, axis=0, return_counts=True)
-    return edges[counts == 1].astype(np.int64)
+    edges, n_faces = edges_of(faces)
+    return edges[n_faces == 1]
 
 
 def _edges_along(
@@ -195,8 +195,8 @@ def _edges_along(
     """Return the edges between locked vertices that lie on a segment."""
     import shapely
 
-    sides = np.sort(tin.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    sides = np.unique(sides[is_locked[sides].all(axis=1)], axis=0).astype(np.int64)
+    sides = edges_of(tin.faces)[0]
+    sides = sides[is_locked[sides].all(axis=1)]
     if segments is None or len(segments) == 0 or len(sides) == 0:
         return sides[:0]
     middle = shapely.points(tin.vertices[sides, :2].mean(axis=1))
