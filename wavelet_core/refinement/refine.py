@@ -34,9 +34,10 @@ REPLACED_SHARE = 0.1
 #: are reckoned with all others as they are, which takes the cost for too high and the gain for too
 #: low: moves and flips then better both.
 REPLACED_RATIO = 8.0
-#: Passes of flips before and after the vertices move.
+#: Passes of flips before and after the vertices move. On three DEMs 1, 2 and 8 change the RMSE at
+#: 2 %, and the vertices within a tolerance, by less than 1 %, either way.
 FLIP_PASSES = 4
-#: Passes that thin the TIN in one round.
+#: Passes that thin the TIN in one round. 2 leave 0.1 to 0.5 % more vertices, 12 as many.
 THIN_PASSES = 6
 
 
