@@ -61,7 +61,7 @@ lint: $(BIN)/.installed-dev
 
 # The site, readable offline, in docs/_build/html. Whatever Sphinx warns of is an error.
 docs: $(BIN)/.installed-docs
-	$(BIN)/python -m sphinx --fail-on-warning --keep-going --jobs auto -q -b html docs docs/_build/html
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q -b html docs docs/_build/html
 	@echo docs/_build/html/index.html
 
 plugin:
