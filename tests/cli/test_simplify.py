@@ -73,7 +73,7 @@ def test_a_point_cloud_is_simplified_with_its_attributes(done, tmp_path):
 
 
 def test_one_rule_is_needed(command, dem, tmp_path):
-    assert command("simplify", dem, tmp_path / "out.ply").code == 1
+    assert command("simplify", dem, tmp_path / "out.ply").code == 2
     both = ("--vertices", 9, "--max-error", 1)
     assert command("simplify", dem, tmp_path / "out.ply", *both).code == 2
 

@@ -55,6 +55,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     make_standard_streams_usable()
     try:
         chosen = argument_parser().parse_args(arguments)
+        if "check" in chosen:  # of a command, what argparse has no words for
+            chosen.check(chosen)
     except SystemExit as stop:  # argparse has said why
         return stop.code if isinstance(stop.code, int) else 2
     console = Console(quiet=chosen.quiet, as_json=chosen.json, name_of=chosen.name_of)

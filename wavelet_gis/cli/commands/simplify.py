@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -86,6 +87,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="vertices are input points, height and all, also where the mean square counts",
     )
+    parser.set_defaults(check=partial(_require_rule, parser))
     _add_solver_arguments(parser)
     add_surface_arguments(parser)
     add_input_arguments(parser)
@@ -149,6 +151,13 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     if tin.along_lines is not None:
         console.say(line_about(tin.along_lines, terrain.vertical_unit))
     console.figures({"output": str(arguments.output), **figures})
+
+
+def _require_rule(parser: argparse.ArgumentParser, given: argparse.Namespace) -> None:
+    """End with the usage where nothing says how large or how accurate the TIN is to be."""
+    rules = (given.vertices, given.max_error, given.max_rms, given.zones)
+    if all(rule is None for rule in rules):
+        parser.error("one of --vertices, --max-error, --rmse and --zones is required")
 
 
 def _add_solver_arguments(parser: argparse.ArgumentParser) -> None:
