@@ -268,7 +268,7 @@ def _coordinates(path: Path) -> Any:
         warnings.simplefilter("ignore")
         layers = pyogrio.list_layers(path)
         layer = next(name for name, kind in layers if kind is not None)
-        geometry = pyogrio.raw.read(path, layer=layer)[2]
+        geometry = pyogrio.raw.read(path, layer=layer, columns=[])[2]  # others may be damaged
     return shapely.get_coordinates(shapely.from_wkb(geometry), include_z=True)
 
 
