@@ -72,7 +72,7 @@ class Contours(PyramidAlgorithm):
 
     def declare(self) -> None:
         """Declare parameters and outputs."""
-        self.add_pyramid_parameter()
+        self.add_pyramid_parameter("LEVEL")
         self.add(
             QgsProcessingParameterNumber(
                 "INTERVAL", tr("Interval"), REAL_NUMBER, None, optional=True, minValue=0.0

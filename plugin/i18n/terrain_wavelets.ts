@@ -250,7 +250,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
-    <source>GeoPackage that one of the analyses made.</source>
+    <source>GeoPackage that one of the analyses made. Those of this session, temporary ones too, and those with a layer in the project are in the list.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -810,7 +810,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>0 is the coarsest; the number of levels is the input itself.</source>
+    <source>0 is the coarsest; the number of levels is the input itself. In the dialog, click a row of the table of levels.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1750,12 +1750,22 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Add the pyramid to the map</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Input points that the coarsest surface does not cover</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Largest error of the coarsest surface, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Opens the layers in the pyramid file, with their styles, when it is written.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1796,6 +1806,11 @@
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Writing the pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>level   vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2064,6 +2079,16 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{} (temporary)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{}: {}, {} levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/ui/layer_styles.py"/>
     <source>level {}</source>
     <translation type="unfinished"></translation>
@@ -2076,6 +2101,36 @@
   <message>
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>Select a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>not measured</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

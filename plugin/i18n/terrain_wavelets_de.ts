@@ -250,8 +250,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
-    <source>GeoPackage that one of the analyses made.</source>
-    <translation>GeoPackage, das eine der Analysen erzeugt hat.</translation>
+    <source>GeoPackage that one of the analyses made. Those of this session, temporary ones too, and those with a layer in the project are in the list.</source>
+    <translation>GeoPackage, das eine der Analysen erzeugt hat. Die dieser Sitzung, auch temporäre, und die mit einem Layer im Projekt stehen in der Liste.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
@@ -810,8 +810,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>0 is the coarsest; the number of levels is the input itself.</source>
-    <translation>0 ist die gröbste; die Anzahl der Stufen ist die Eingabe selbst.</translation>
+    <source>0 is the coarsest; the number of levels is the input itself. In the dialog, click a row of the table of levels.</source>
+    <translation>0 ist die gröbste; die Anzahl der Stufen ist die Eingabe selbst. Im Dialog: eine Zeile der Tabelle der Stufen anklicken.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
@@ -1750,6 +1750,11 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Add the pyramid to the map</source>
+    <translation>Pyramide zur Karte hinzufügen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Input points that the coarsest surface does not cover</source>
     <translation>Punkte der Eingabe, die die gröbste Fläche nicht bedeckt</translation>
   </message>
@@ -1757,6 +1762,11 @@
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Largest error of the coarsest surface, in the unit of elevation</source>
     <translation>Größter Fehler der gröbsten Fläche, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Opens the layers in the pyramid file, with their styles, when it is written.</source>
+    <translation>Öffnet die Layer der Pyramidendatei mit ihren Stilen, sobald sie geschrieben ist.</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
@@ -1797,6 +1807,11 @@
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Writing the pyramid</source>
     <translation>Schreiben der Pyramide</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>level   vertices</source>
+    <translation>Stufe  Stützpunkte</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
@@ -2064,6 +2079,16 @@
     <translation>zwei- bis siebenmal so schnell</translation>
   </message>
   <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{} (temporary)</source>
+    <translation>{} (temporär)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{}: {}, {} levels</source>
+    <translation>{}: {}, {} Stufen</translation>
+  </message>
+  <message>
     <location filename="../../plugin/ui/layer_styles.py"/>
     <source>level {}</source>
     <translation>Stufe {}</translation>
@@ -2077,6 +2102,36 @@
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
     <translation>{}: {}; fehlt, zu installieren {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>Select a file</source>
+    <translation>Datei wählen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation>eine Pyramide dieses Projekts oder dieser Sitzung, oder eine Datei</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>largest error</source>
+    <translation>größter Fehler</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>level</source>
+    <translation>Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>not measured</source>
+    <translation>nicht gemessen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>vertices</source>
+    <translation>Stützpunkte</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>
