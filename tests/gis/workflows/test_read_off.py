@@ -238,3 +238,15 @@ class TestMeshQuality:
         assert [row.level for row in wg.mesh_quality(plane, levels=[3, 0])] == [0, 3]
         with pytest.raises(OptionError, match="no level 6"):
             wg.mesh_quality(plane, levels=[6])
+
+
+def test_aspects_around_north_are_not_averaged_to_the_south(tmp_path):
+    y, x = np.mgrid[0:40, 0:50]
+    hollow = 100 + 3.0 * y - 20 * np.cos((x - 24.5) / 12)  # it falls to the north
+    pyramid = wg.analyse(wg.open(write_tif(tmp_path / "n.tif", hollow.astype("f4"))), levels=6)
+    bands = wg.details(pyramid, what="shape", level=0).raster(cell_size=1.0)
+    aspect = bands.values[bands.names.index("aspect")]
+    off_north = np.abs((aspect + 180) % 360 - 180)
+    assert np.nanmax(off_north) < 60
+    slope = bands.values[bands.names.index("slope")]
+    assert 10 < np.nanmean(slope) < 30
