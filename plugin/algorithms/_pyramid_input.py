@@ -44,10 +44,15 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
         )
 
     def refusal(self, request: Request) -> str | None:
-        """Refuse a file that is not there before anything is started."""
+        """Refuse a file that is not there, or levels that are no numbers, before the start."""
         path = request.input_file("INPUT")
         if not os.path.isfile(path):
             return tr("{}: there is no such file; choose a pyramid.").format(path)
+        if self.parameterDefinition("LEVELS") is not None:
+            try:
+                request.whole_numbers("LEVELS")
+            except ValueError:
+                return tr("Levels are numbers separated by commas, such as 0,4,8.")
         return None
 
     def geo_pyramid(

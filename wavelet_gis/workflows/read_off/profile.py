@@ -98,7 +98,7 @@ class Profile:
         """
         suffix = suffix_of(path)
         if suffix == ".csv":
-            write_text(path, self._csv())
+            write_text(path, self.csv())
         elif suffix == PYRAMID_SUFFIX:
             from wavelet_gis.io.vector.vector_writer import add_layers
 
@@ -130,7 +130,8 @@ class Profile:
                 )
         return {"levels": list(self.levels), "n_points": len(self.line), "profiles": rows}
 
-    def _csv(self) -> str:
+    def csv(self) -> str:
+        """Return the table as text, a line each point; nothing where there is no height."""
         columns = self.table()
         rows = [",".join(columns)]
         for values in zip(*(column.tolist() for column in columns.values()), strict=True):
