@@ -60,6 +60,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>A file, or a point cloud layer of the project, by its name or id: its filter by class and its CRS count. Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Attributes</source>
     <translation type="unfinished"></translation>
   </message>
@@ -115,11 +120,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -155,12 +155,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Point cloud file</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
+    <source>Point cloud</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -176,6 +171,11 @@
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Taken: the {} points of the ground (class 2), of {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>The filter of the layer {} leaves: {}</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -210,12 +210,37 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>{} classes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>{}: QGIS does not understand the CRS in the file; choose one.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>{}: there is no such file; choose a LAS or LAZ file.</source>
+    <source>{}: its filter leaves none of the classes that are named; change one.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, asks for more than classes; export the layer, or filter by Classification alone.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, lets no class through; change it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: there is no such file; choose a point cloud.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: this layer is of {}, and local LAS, LAZ and COPC files are what is read; export it as one.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2454,6 +2479,46 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>Select a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a point cloud layer of the project, or a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>not measured</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>vertices</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/ui/known_pyramids.py"/>
     <source>{} (temporary)</source>
     <translation type="unfinished"></translation>
@@ -2476,36 +2541,6 @@
   <message>
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>Select a file</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>a pyramid of this project or session, or a file</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>largest error</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>level</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>not measured</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

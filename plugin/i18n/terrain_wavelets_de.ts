@@ -60,6 +60,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>A file, or a point cloud layer of the project, by its name or id: its filter by class and its CRS count. Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
+    <translation>Eine Datei, oder ein Punktwolken-Layer des Projekts, mit Namen oder Kennung: sein Filter nach Klassen und sein KBS gelten. Das Plugin liest selbst, QGIS braucht keine Unterstützung für Punktwolken.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Attributes</source>
     <translation>Attribute</translation>
   </message>
@@ -115,11 +120,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
-    <translation>LAS, LAZ und COPC (*.las *.laz *.LAS *.LAZ)</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
     <translation>Nur weglassen, was solche Kanten nach außen öffnen; Lücken im Inneren bleiben geschlossen.</translation>
   </message>
@@ -155,13 +155,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Point cloud file</source>
-    <translation>Punktwolkendatei</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
-    <translation>Die Erweiterung liest sie selbst; QGIS muss Punktwolken nicht unterstützen.</translation>
+    <source>Point cloud</source>
+    <translation>Punktwolke</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
@@ -177,6 +172,11 @@
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Taken: the {} points of the ground (class 2), of {}</source>
     <translation>Genommen: die {} Punkte des Bodens (Klasse 2) von {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>The filter of the layer {} leaves: {}</source>
+    <translation>Der Filter des Layers {} lässt übrig: {}</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
@@ -210,13 +210,38 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>{} classes</source>
+    <translation>{} Klassen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>{}: QGIS does not understand the CRS in the file; choose one.</source>
     <translation>{}: QGIS versteht das KBS in der Datei nicht; wählen Sie eines.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>{}: there is no such file; choose a LAS or LAZ file.</source>
-    <translation>{}: Diese Datei gibt es nicht; wählen Sie eine LAS- oder LAZ-Datei.</translation>
+    <source>{}: its filter leaves none of the classes that are named; change one.</source>
+    <translation>{}: sein Filter lässt keine der genannten Klassen übrig; eines davon ändern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, asks for more than classes; export the layer, or filter by Classification alone.</source>
+    <translation>{}: sein Filter, {}, fragt nach mehr als Klassen; den Layer exportieren, oder nur nach Classification filtern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, lets no class through; change it.</source>
+    <translation>{}: sein Filter, {}, lässt keine Klasse durch; ihn ändern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: there is no such file; choose a point cloud.</source>
+    <translation>{}: es gibt keine solche Datei; eine Punktwolke wählen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: this layer is of {}, and local LAS, LAZ and COPC files are what is read; export it as one.</source>
+    <translation>{}: dieser Layer ist aus {}, gelesen werden lokale LAS-, LAZ- und COPC-Dateien; ihn als eine solche exportieren.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_dem_input.py"/>
@@ -2454,6 +2479,46 @@
     <translation>zwei- bis siebenmal so schnell</translation>
   </message>
   <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
+    <translation>LAS, LAZ und COPC (*.las *.laz *.LAS *.LAZ)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>Select a file</source>
+    <translation>Datei wählen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a point cloud layer of the project, or a file</source>
+    <translation>ein Punktwolken-Layer des Projekts, oder eine Datei</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation>eine Pyramide dieses Projekts oder dieser Sitzung, oder eine Datei</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>largest error</source>
+    <translation>größter Fehler</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>level</source>
+    <translation>Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>not measured</source>
+    <translation>nicht gemessen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>vertices</source>
+    <translation>Stützpunkte</translation>
+  </message>
+  <message>
     <location filename="../../plugin/ui/known_pyramids.py"/>
     <source>{} (temporary)</source>
     <translation>{} (temporär)</translation>
@@ -2477,36 +2542,6 @@
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
     <translation>{}: {}; fehlt, zu installieren {}</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>Select a file</source>
-    <translation>Datei wählen</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>a pyramid of this project or session, or a file</source>
-    <translation>eine Pyramide dieses Projekts oder dieser Sitzung, oder eine Datei</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>largest error</source>
-    <translation>größter Fehler</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>level</source>
-    <translation>Stufe</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>not measured</source>
-    <translation>nicht gemessen</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>vertices</source>
-    <translation>Stützpunkte</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>

@@ -12,6 +12,8 @@ from qgis.core import (
     QgsProcessingParameterFileDestination,
 )
 
+from .request import file_of
+
 if TYPE_CHECKING:
     from qgis.core import (
         QgsProcessingAlgorithm,
@@ -61,7 +63,7 @@ def _input_files(
     for definition in algorithm.parameterDefinitions():
         name, kind = definition.name(), definition.type()
         if kind == "file":
-            files.append(algorithm.parameterAsString(parameters, name, context))
+            files.append(file_of(algorithm, parameters, name, context))
         elif kind == "raster":
             raster = algorithm.parameterAsRasterLayer(parameters, name, context)
             files.append(raster.source() if raster else "")
