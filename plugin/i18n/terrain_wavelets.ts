@@ -299,6 +299,56 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Angles {:.3g} to {:.3g} degrees, edges {:.4g} to {:.4g}, areas to {:.4g}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>In degrees, at most 30; 25 where another of these bounds is given. Nodes are added to the TIN until all bounds hold. Needs the Python packages cgal and shapely.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>In the unit of the CRS, metres for degrees: no edge is longer.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Its area, in the squared unit of the CRS.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Largest triangle for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Longest edge for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Meshing for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>No two vertices of the TIN are nearer, but for those of outline and lines.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Shortest edge for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Smallest angle for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/analyse_dem.py"/>
     <source>Analyse DEM</source>
     <translation type="unfinished"></translation>
@@ -1899,6 +1949,96 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source> zoom   tiles  vertices  largest error (m)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Empty for the one whose tiles have some 128 points along each side.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Finest zoom</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Folder of tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>For light and shade.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Height beyond the data</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>In metres.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Largest error of the finest zoom, in metres</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Number of tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Number of zooms</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Of the finest zoom, in metres; twice that for the next, and so on. Empty for a tenth of the spacing of the points.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Quantized-mesh tiles of all zooms for globes such as CesiumJS, and for QGIS</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Terrain for the web</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>With &lt;i&gt;layer.json&lt;/i&gt; and the tiles. An earlier tile set there is replaced.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Write normals</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Writes the terrain as tiles of triangles for all zooms, without cracks between them, each zoom half as far off as the one before. A web server that gives the folder to a globe is all that it takes; QGIS reads it as a quantized-mesh layer.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Writing the tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>quantized mesh,cesium,globe,tiles,terrain,3d,web,layer.json,level,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/base.py"/>
     <source>Also returned</source>
     <translation type="unfinished"></translation>
@@ -2461,6 +2601,11 @@
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
     <source>meshes as GLB</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
+    <source>meshes for solvers: bounds of angles and edges</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
