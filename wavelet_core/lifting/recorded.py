@@ -495,9 +495,7 @@ def _part_bounds(pyramid: Pyramid, manner: Manner) -> tuple[int, ...]:
     return tuple(bounds)
 
 
-def _begins_part(
-    n_vertices: int, size: int, n_input: int, manner: Manner, share: float
-) -> bool:
+def _begins_part(n_vertices: int, size: int, n_input: int, manner: Manner, share: float) -> bool:
     """Whether a part begins at a level, the one before having begun with ``size`` vertices."""
     if n_input < LEAST_IN_PARTS or manner.outline_tolerance:
         return False  # a tolerance is measured from the outline of the input

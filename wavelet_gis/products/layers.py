@@ -33,14 +33,14 @@ __all__ = [
     "tin_layers",
 ]
 
-#: Vector layers of a pyramid file: in proportion, the coarse TIN unless it is large and the details of
-#: the coarser levels; coarse TIN and all details; the coarse TIN alone; or none.
+#: Vector layers of a pyramid file: in proportion, the coarse TIN unless it is large and the details
+#: of the coarser levels; coarse TIN and all details; the coarse TIN alone; or none.
 Layers = Literal["auto", "all", "coarse", "none"]
 
 #: Features that "auto" may write: what QGIS shows at once, in some 10 MB where all are points.
 MOST_FEATURES = 80_000
-#: The coarse TIN and its vertices are layers in "auto" as long as they have at most so many features,
-#: whatever is left for details: those of 50,000 vertices, in some 35 MB.
+#: The coarse TIN and its vertices are layers in "auto" as long as they have at most so many
+#: features, whatever is left for details: those of 50,000 vertices, in some 35 MB.
 MOST_COARSE_FEATURES = 150_000
 
 
@@ -96,8 +96,8 @@ def pyramid_layers(geo: GeoPyramid, layers: str = "auto") -> Iterator[Layer]:
     else:
         note(
             "coarse_layers_left_out",
-            "the coarse TIN, {n_features:,} triangles, is no layer, to keep the file small; extract "
-            "takes it out of the pyramid, and {0} coarse writes it into the file",
+            "the coarse TIN, {n_features:,} triangles, is no layer, to keep the file small; "
+            "extract takes it out of the pyramid, and {0} coarse writes it into the file",
             "layers",
             n_features=geo.pyramid.n_faces(0),
         )
