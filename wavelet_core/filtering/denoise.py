@@ -19,7 +19,8 @@ from ._bounded import ROWS_AT_ONCE
 from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
 from .noise import check_sigma, noise_columns, noise_gains
-from .noise_model import OUTLIER_PASSES, ROWS_OF_RANKS, Noise, RangeOption, noise_of
+from .noise_model import Noise, RangeOption, noise_of
+from .outliers import OUTLIER_PASSES, ROWS_OF_RANKS
 from .undecimated import UndecimatedBank
 
 #: Scales of the details of all vertices for a level of a pyramid: they reach as far.

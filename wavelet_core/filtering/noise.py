@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import ndimage
 from scipy.sparse import csr_array, diags  # diags_array is not in SciPy 1.10
 
 from .._validate import FloatArray
@@ -164,3 +165,26 @@ def check_sigma(sigma: float | None) -> None:
         raise OptionError(
             "{0} is {given}; give the noise's standard deviation, 0 or more.", "sigma", given=sigma
         )
+
+
+def correlated_noise(
+    plan: FloatArray, reach: float, n_columns: int, generator: np.random.Generator
+) -> FloatArray:
+    """Return columns of noise of deviation 1 whose correlation has fallen to 1/e at ``reach``.
+
+    White noise on a grid in plan, blurred by a Gaussian and read off at the vertices: its
+    correlation falls as ``exp(-(distance / reach)^2)`` on any mesh.
+    """
+    width = reach / 2.0
+    extent = np.ptp(plan, axis=0)
+    cell = max(width / 1.5, float(np.sqrt(extent.prod() / (8.0 * len(plan)))), extent.max() / 3e4)
+    at = (plan - plan.min(axis=0)).T / cell
+    shape = tuple((np.ceil(extent / cell) + 2).astype(int))
+    columns = np.empty((len(plan), n_columns))
+    for k in range(n_columns):
+        field = ndimage.gaussian_filter(
+            generator.standard_normal(shape), width / cell, mode="reflect", truncate=4.0
+        )
+        columns[:, k] = ndimage.map_coordinates(field, at, order=1, mode="nearest")
+        columns[:, k] /= max(float(columns[:, k].std()), 1e-300)
+    return columns

@@ -275,7 +275,7 @@ def frame_of_bounds(
     Warns
     -----
     CrsWarning, UnitWarning
-        As `wavelet_gis.workflows.open.open_terrain` tells.
+        As `wavelet_gis.workflows.opening.raster_or_cloud.open_terrain` tells.
     """
     try:
         frame = working_frame(system, bounds, vertical_unit)

@@ -5,9 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.errors import InputFileError
 
-__all__ = ["CLOUD", "POINTS", "PYRAMID", "RASTER", "TABLE", "TRIANGLES", "require_meaning"]
+__all__ = [
+    "CLOUD",
+    "POINTS",
+    "PYRAMID",
+    "RASTER",
+    "TABLE",
+    "TRIANGLES",
+    "require_meaning",
+    "system_given",
+]
 
 RASTER, CLOUD, POINTS, TABLE, TRIANGLES, PYRAMID = (
     "a raster",
@@ -87,3 +97,18 @@ def _is_given(name: str, value: Any) -> bool:
     if name == "attributes":
         return len(value) > 0
     return True
+
+
+def system_given(crs: str | None) -> CoordinateSystem | None:
+    """Return the coordinate system that an option names, to be taken instead of the input's.
+
+    Parameters
+    ----------
+    crs : str, optional
+        As a user writes it.
+    """
+    if not crs:
+        return None
+    from wavelet_gis.crs.lookup import coordinate_system
+
+    return coordinate_system(crs)
