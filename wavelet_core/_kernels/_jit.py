@@ -4,7 +4,7 @@ A kernel is written as loops. With numba they are compiled; without it, its twin
 :mod:`wavelet_core._arrays` does the same on whole arrays of numpy, for which every sum is taken in
 the same order: the bytes are the same. The loops themselves, run by Python, are the oracle that
 tests hold both against; in use they run only for the two kernels without a twin, those of the
-NNLS and least squares predictions. docs/engines.md tells a user the same.
+NNLS and least squares predictions. docs/topics/engines.md tells a user the same.
 
 Squares are written as products there: Python's ``x**2`` is one of the C library's powers, which may
 be off by the last bit.

@@ -35,7 +35,7 @@ def order_nearest(start, stop, first, found, x, y, nearest, reach):
 
 
 # classes (n, m) uint8, filled: how clear it is that points are joined to those of nearest (n, m),
-# NOT_ASKED where that is not asked of this one of the two. See docs/format.md, "The input".
+# NOT_ASKED where that is not asked of this one of the two: docs/reference/format.md, "The input".
 @kernel
 def classify_pairs(start, stop, x, y, nearest, reach, classes):
     m = nearest.shape[1]

@@ -131,7 +131,7 @@ def _joined(name: object) -> tuple[Prediction, Update] | None:
 
 
 def refused_pair(prediction: str, update: str) -> bool:
-    """Whether the two filters are not to be used together: see docs/theory.md, Update."""
+    """Whether the two filters are not to be used together: see docs/science/theory.md, Update."""
     of_prediction = PREDICTIONS.find(prediction)
     return _may_blow_up(of_prediction, UPDATES.find(update)) and not of_prediction.equation
 

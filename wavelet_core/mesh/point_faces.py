@@ -67,7 +67,7 @@ class SortedEdges(NamedTuple):
 
 
 def near_pairs(x: FloatArray, y: FloatArray, n_nearest: int) -> NearPairs:
-    """Return the nearest points of each of some points; docs/format.md tells what is asked.
+    """Return the nearest points of each of some points, for docs/reference/format.md, "The input".
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ from .questions import Collapses, Sight
 
 #: The costs of a level are limited by those of the cheapest vertices that it may take: by the
 #: highest cost of this part of them, one sixteenth. From a half to one sixty-fourth the RMSE
-#: changes by less than 1 % and the time from 0.92 to 1.10 (tables in docs/surface.md).
+#: changes by less than 1 % and the time from 0.92 to 1.10 (tables in docs/topics/surface.md).
 CHEAPEST_PART = 16
 #: The limit on costs is never below that of a height error of this part of the range of z, so that
 #: cheapest costs that are rounding alone do not hold up all others. *Our choice*.

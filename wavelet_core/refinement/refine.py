@@ -21,7 +21,7 @@ from ..partition.registry import NORMS
 from ..progress import Progress, report
 from ._tin_state import TinState
 
-#: Rounds at most, where their number is not given. docs/surface.md has what each of them gains.
+#: Rounds at most, where their number is not given; docs/topics/surface.md has what each gains.
 MAX_ROUNDS = 8
 #: Rounds end with the first one that lowers the error, or the number of vertices, by less than
 #: this part.

@@ -21,8 +21,8 @@ from wavelet_core import (
     relifted,
 )
 from wavelet_core.filtering.gains import channel_index
-from wavelet_core.filtering.noise import estimate_noise
-from wavelet_core.filtering.noise_model import Noise, RangeOption
+from wavelet_core.filtering.noise.model import Noise, RangeOption
+from wavelet_core.filtering.noise.white import estimate_noise
 from wavelet_core.lifting.spacings import mesh_spacing
 from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of

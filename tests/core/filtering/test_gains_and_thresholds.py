@@ -7,7 +7,7 @@ from helpers_meshes import grid_with_holes, random_delaunay
 
 from wavelet_core import OptionError, TriangleMesh, analyse, synthetic
 from wavelet_core.filtering.gains import band_gains, relifted
-from wavelet_core.filtering.noise import estimate_noise, noise_gains
+from wavelet_core.filtering.noise.white import estimate_noise, noise_gains
 from wavelet_core.lifting.linear_map import Transform
 from wavelet_core.lifting.spacings import level_spacings
 

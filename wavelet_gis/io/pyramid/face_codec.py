@@ -27,7 +27,7 @@ __all__ = ["N_EDGE_CLASSES", "FaceRecord", "decode_faces", "encode_faces"]
 #: Nearest points that are looked at. With 12 the far edges are 10 times as many.
 N_NEAREST = 16
 
-#: See docs/format.md, and `wavelet_core._kernels.point_faces.class_of_pair`.
+#: See docs/reference/format.md, and `wavelet_core._kernels.point_faces.class_of_pair`.
 N_EDGE_CLASSES = 8
 
 #: Coordinates beyond this have squares that are no exact floats.

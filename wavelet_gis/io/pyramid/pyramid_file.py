@@ -7,8 +7,8 @@ Tables, beside the layers that other modules add:
 * ``wavelet_arrays`` and ``wavelet_chunks``: arrays of plain numbers, see
   `wavelet_gis.io.pyramid.array_tables`.
 
-docs/format.md is the description for those who write a reader. Reading trusts nothing: types,
-sizes, shapes and index ranges are checked before use.
+docs/reference/format.md describes the format for those who write a reader. Reading trusts nothing:
+types, sizes, shapes and index ranges are checked before use.
 """
 
 from __future__ import annotations
