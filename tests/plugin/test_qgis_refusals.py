@@ -193,7 +193,7 @@ class TestTwoCrs:
 
     def test_points_whose_crs_is_wrong(self, refused, output):
         parameters = {"INPUT": point_layer(survey(50), crs="EPSG:4326"), "OUTPUT": output}
-        assert "no degrees" in refused("analysetin", parameters)
+        assert "not degrees" in refused("analysetin", parameters)
 
 
 class TestNoData:

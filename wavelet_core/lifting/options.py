@@ -199,8 +199,8 @@ def resolve_options(
     tolerance = _number("outline_tolerance", outline_tolerance)
     if tolerance and not is_error_guided:
         raise OptionError(
-            "{0} is used by {1} surface with {2} barycentric, {3} minimum_norm or none and {4} z; "
-            "here they are {partition}, {prediction}, {update} and {signal}.",
+            "{0} needs {1} 'surface', {2} 'barycentric', {3} 'minimum_norm' or 'none' and {4} 'z'; "
+            "they are {partition!r}, {prediction!r}, {update!r} and {signal!r}.",
             "outline_tolerance",
             "partition",
             "prediction",
@@ -250,7 +250,7 @@ def _require_use(partition: PartitionRow, given: Iterable[str]) -> None:
         if name not in partition.options:
             users = [row.name for row in PARTITIONS.values() if name in row.options]
             raise OptionError(
-                "{0} is used by {1} {users} only, and that is {partition} here; leave one out.",
+                "{0} is an option of {1} {users} only, and {1} is {partition}; leave one out.",
                 name,
                 "partition",
                 users=" and ".join(users),

@@ -123,7 +123,7 @@ class SurfaceAnalysis(NamedTuple):
 
 
 class Recorder(Protocol):
-    """Is told what an analysis does; see `wavelet_core.lifting.recorded.Recorder`."""
+    """Follows what an analysis does; see `wavelet_core.lifting.recorded.Recorder`."""
 
     def look(self, level: SurfaceLevel, collapses: Collapses) -> None:
         """See which collapses are about to be taken on a level."""

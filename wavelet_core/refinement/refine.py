@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._kernels._jit import fitting_engine
-from .._kernels.refine_tin import Aim
+from .._kernels.refine_tin import Objective
 from .._validate import FloatArray, IntArray
 from ..accuracy.fitted_heights import fitted
 from ..errors import MeshError, OptionError
@@ -228,7 +228,7 @@ class _Work:
             ids,
             face_of,
             task.locked,
-            Aim(
+            Objective(
                 # within a tolerance, errors that are small rather than even leave room for removals
                 task.is_largest and task.limits is None,
                 task.is_free,
@@ -266,7 +266,9 @@ class _Work:
             n_replaced = 0
             if self._task.is_largest:
                 largest = self.rounds[-1].max_error * self._weights[0]
-                self._state.aim = self._state.aim._replace(tolerance=float(largest) ** 2)
+                self._state.objective = self._state.objective._replace(
+                    tolerance=float(largest) ** 2
+                )
             if number > 0 and not is_last:
                 n_replaced = self._state.replace(share, REPLACED_RATIO)
             self._improve(number, most, n_replaced=n_replaced)

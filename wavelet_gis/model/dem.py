@@ -26,6 +26,7 @@ from wavelet_gis.model.exact_restore import (
     kept_column,
     nearest_of_dtype,
     number_dtype,
+    require_checksum,
 )
 
 __all__ = [
@@ -250,7 +251,9 @@ class RasterOrigin:
             return None
         n_vertices = self.n_vertices
         if len(self.corrections.values) != n_vertices:
-            raise PyramidError("the raster has other cells than numbers; analyse the input anew.")
+            raise PyramidError(
+                "the raster's mask does not match its numbers; analyse the input anew."
+            )
         dem = self._dem(self.corrections.values)
         if faces is None:
             return dem_mesh(dem, frame)
@@ -277,11 +280,7 @@ class RasterOrigin:
                 _avoiding_nodata(nearest_of_dtype(approximate, self.dtype), self.nodata)
             )
         dem = self._dem(self.corrections.restore(approximate))
-        if checksum([dem.values]) != self.checksum:
-            raise PyramidError(
-                "the reconstruction is not bit for bit the original (its checksum differs); "
-                "the file is damaged, analyse the input anew."
-            )
+        require_checksum([dem.values], self.checksum)
         return dem
 
     def _dem(self, of_valid: NDArray[Any]) -> Dem:

@@ -320,8 +320,8 @@ def frame_of_bounds(
         warn(
             UnitWarning,
             "vertical_unit_assumed",
-            "{name}: x and y are in units of {metres:g} m and nothing tells the unit of z; it is "
-            "taken for the metre ({0} names another)",
+            "{name}: x and y are in units of {metres:g} m and nothing gives the unit of z; metres "
+            "are assumed ({0} names another)",
             "vertical_unit",
             stacklevel=3,
             name=name,

@@ -193,14 +193,14 @@ def filter_pyramid(
         raise OptionError(
             "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
         )
-    told_of_noise = {
+    of_noise = {
         "noise_range": noise_range != 0.0,
         "local_noise": local_noise,
         "outliers": outliers,
         "n_pyramids": n_pyramids is not None,
         "channels": channels is not None,
     }
-    in_vain = [name for name, is_given in told_of_noise.items() if is_given]
+    in_vain = [name for name, is_given in of_noise.items() if is_given]
     if in_vain and not asks_denoising:
         raise OptionError("{0} is for {1}; give {1} too, or leave {0} out.", in_vain[0], "denoise")
     n_pyramids = N_PYRAMIDS if n_pyramids is None else n_pyramids
@@ -295,7 +295,7 @@ def denoised(
             )
     if n_pyramids == 0 and (noise_range != 0.0 or local_noise or outliers):
         raise OptionError(
-            "thresholds know white noise only; leave out {0}, {1} and {2}, or average one or more "
+            "thresholds assume white noise; leave out {0}, {1} and {2}, or average one or more "
             "pyramids with {3}.",
             *NOISE_OPTIONS,
             "n_pyramids",
@@ -328,9 +328,9 @@ def denoised(
             progress=part,
         )
         noise = found[name]
-        _tell_of_outliers(geo.source_name, name, noise)
+        _note_outliers(geo.source_name, name, noise)
         if noise.is_rough:
-            _tell_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
+            _warn_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
         sigmas[name] = noise.sigma / unit
         in_file = replace(
             noise,
@@ -345,8 +345,8 @@ def denoised(
     return geo.with_pyramid(pyramid, line), sigmas
 
 
-def _tell_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
-    """Warn that noise and relief were not to be told apart."""
+def _warn_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
+    """Warn that noise and relief could not be told apart."""
     kind = "white, since its range is not to be told either, and " if noise_range else ""
     warn(
         TerrainWarning,
@@ -362,13 +362,13 @@ def _tell_of_roughness(source: str, channel: str, sigma: float, noise_range: Ran
     )
 
 
-def _tell_of_outliers(source: str, channel: str, noise: Noise) -> None:
+def _note_outliers(source: str, channel: str, noise: Noise) -> None:
     """Warn of values that denoising passes through, since no noise is like them."""
     if noise.n_standing_out:
         warn(
             TerrainWarning,
             "outliers_left",
-            "{name}: outliers of {channel}, values that stand out of their neighbours far above "
+            "{name}: outliers of {channel}, values that stand out from their neighbours far above "
             "the noise, are left as they are ({n_values} here; {0} replaces them)",
             "outliers",
             stacklevel=4,

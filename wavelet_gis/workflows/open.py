@@ -15,7 +15,7 @@ from wavelet_gis.io.formats import (
     VECTOR_SUFFIXES,
     suffix_of,
 )
-from wavelet_gis.io.names import files_of, told_as_one
+from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected, warn
 from wavelet_gis.workflows.analyse import Analysis
@@ -141,7 +141,7 @@ def open_input(
     with collected() as notes:
         files = files_of(path)
         if files[1:]:
-            require_meaning(told_as_one(files), CLOUD, {"layer": layer, "z_field": z_field})
+            require_meaning(joint_name(files), CLOUD, {"layer": layer, "z_field": z_field})
             terrain = open_terrain(files, **options)
         else:
             terrain = _terrain_of_file(files[0], layer, z_field, options, shapes)
@@ -175,7 +175,7 @@ def open_pyramid_or_input(
             raise InputFileError(
                 "{path}: this is no pyramid, and {0} is for one; leave it out.",
                 "level",
-                path=told_as_one(files),
+                path=joint_name(files),
             )
         return open_input(path, **options)
     path = files[0]
@@ -183,7 +183,7 @@ def open_pyramid_or_input(
     for name in ("crs", "vertical_unit"):
         if options.get(name):
             raise InputFileError(
-                "{path}: a pyramid knows its own, and {0} is for other input; leave it out.",
+                "{path}: a pyramid has its own, so {0} is for other input only; leave it out.",
                 name,
                 path=path,
             )

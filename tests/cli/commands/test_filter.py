@@ -176,7 +176,7 @@ def test_noise_by_place_with_a_range_and_outliers_is_told(tmp_path, capsys):
     assert "give --denoise too" in capsys.readouterr().err
     thresholds = ["--denoise", "--pyramids", "0", "--noise-range", "30", "--overwrite"]
     assert main(["filter", pyramid, out, *thresholds]) == 1
-    assert "thresholds know white noise only" in capsys.readouterr().err
+    assert "thresholds assume white noise" in capsys.readouterr().err
 
 
 def test_outliers_that_pass_through_are_told(done, tmp_path):

@@ -1,6 +1,5 @@
 """Inputs of bug reports that belong to no one kind of file, and that each of them has its test."""
 
-import shutil
 import sqlite3
 from pathlib import Path
 
@@ -10,19 +9,6 @@ import rasterio
 pytestmark = pytest.mark.data
 
 TESTS = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture
-def found(data_folder, tmp_path, monkeypatch):
-    """Return a function that goes into a copy of a folder of inputs."""
-
-    def enter(name):
-        folder = tmp_path / "found"
-        shutil.copytree(data_folder / "found" / name, folder)
-        monkeypatch.chdir(folder)
-        return folder
-
-    return enter
 
 
 def test_every_folder_has_a_test_that_names_it(data_folder):

@@ -13,19 +13,6 @@ from gis.samples import hills, write_tif
 pytestmark = pytest.mark.filterwarnings("ignore::wavelet_gis.errors.TerrainWarning")
 
 
-@pytest.fixture
-def found(data_folder, tmp_path, monkeypatch):
-    """Return a function that goes into a copy of a folder of inputs."""
-
-    def enter(name):
-        folder = tmp_path / "found"
-        shutil.copytree(data_folder / "found" / name, folder)
-        monkeypatch.chdir(folder)
-        return folder
-
-    return enter
-
-
 @pytest.mark.data
 def test_isolated_cells_are_written_and_counted(found, done):
     found("isolated-cells-lost")
@@ -93,7 +80,7 @@ def test_kilometres(found, process):
     found("km-units")
     said = process("analyse", "kmr.tif", "k.gpkg", "--levels", 1)
     assert said.stderr.count("\n") == 1, said.stderr
-    assert "taken for the metre" in said.stderr
+    assert "metres are assumed" in said.stderr
     connection = sqlite3.connect("k.gpkg")
     slopes = sorted(s for (s,) in connection.execute("SELECT slope FROM coarse_tin"))
     connection.close()

@@ -89,7 +89,7 @@ def test_a_band_in_ground_units_keeps_the_levels_of_that_size():
         (lambda p: band_gains(p), "give one"),
         (lambda p: band_gains(p, levels=(0, 1), lengths=(1, 2)), "give one"),
         (lambda p: band_gains(p, levels=(3, 1)), "smaller bound first"),
-        (lambda p: band_gains(p, lengths=(1e6, 2e6)), "no level has details of"),
+        (lambda p: band_gains(p, lengths=(1e6, 2e6)), "no level has a spacing of"),
         (lambda p: p.denoised(-1.0), "sigma is -1"),
         (lambda p: p.denoised(1.0, method="median"), "method is 'median'"),
         (lambda p: p.denoised(1.0, strength=-1), "strength is -1"),

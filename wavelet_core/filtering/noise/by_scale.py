@@ -1,4 +1,4 @@
-"""Noise told from relief: by how its details fall off over the scales, and in flat places."""
+"""Noise separated from relief, by how its details fall off over the scales and in flat places."""
 
 from __future__ import annotations
 

@@ -121,7 +121,7 @@ def faces_to_parts(
 def faces_from_parts(
     fields: Fields, arrays: ArraySource, places: NDArray[np.int64] | None
 ) -> NDArray[Any]:
-    """Return the faces that `faces_to_parts` told, ``(m, 3)``.
+    """Return the faces that `faces_to_parts` stored, ``(m, 3)``.
 
     Raises
     ------

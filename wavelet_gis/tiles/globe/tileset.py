@@ -178,7 +178,7 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
         mesh, name = data.pyramid.synthesise(level), data.source_name
     if data.system.wkt is None or data.system.kind == "unknown":
         raise CrsError(
-            "{name}: nothing tells where on earth this is; give its CRS with {0}.",
+            "{name}: nothing says where on earth this is; give its CRS with {0}.",
             "crs",
             name=name,
         )
@@ -217,7 +217,7 @@ class _Writer:
         report(progress, 0.03)
 
     def run(self, name: str) -> Tileset:
-        """Write all tiles and the file that tells of them."""
+        """Write all tiles and the file that lists them."""
         plan, source = self._plan, self._source
         low, high = source.extent() * (tile_width(plan.zoom) / STEPS) - [180.0, 90.0]
         ranges = ranges_of((*low.tolist(), *high.tolist()), plan.zoom)
@@ -246,7 +246,7 @@ class _Writer:
                     tiles.zoom, len(drawn), n_vertices, n_bytes, plan.error_at(tiles.zoom), worst
                 )
             )
-        self._tell_of_errors(figures, name)
+        self._warn_of_errors(figures, name)
         longitude, latitude = self._globe.longitude, self._globe.latitude
         west, south, east, north = (
             float(value)
@@ -257,7 +257,7 @@ class _Writer:
         (self._folder / LAYER).write_text(json.dumps(layer, indent=1) + "\n", "utf-8")
         return Tileset(bounds, tuple(figures[::-1]), plan.height_step)
 
-    def _tell_of_errors(self, figures: list[ZoomFigures], name: str) -> None:
+    def _warn_of_errors(self, figures: list[ZoomFigures], name: str) -> None:
         """Warn where a zoom has not kept its error, as on points like a field of spikes."""
         above = [zoom for zoom in figures if zoom.max_error > zoom.promised]
         if above:

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from wavelet_gis.crs.frame import CoordinateSystem, vertical_unit_name
 from wavelet_gis.errors import CrsError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
-from wavelet_gis.io.names import files_of, readable, told_as_one
+from wavelet_gis.io.names import files_of, joint_name, readable
 from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem
 from wavelet_gis.workflows.opening.input_options import (
@@ -86,7 +86,7 @@ def open_terrain(
         "keep_withheld": keep_withheld,
     }
     of_surface = {"duplicates": duplicates, "max_edge": max_edge, "concave": concave}
-    name = readable(told_as_one(files))
+    name = readable(joint_name(files))
     if suffix_of(files[0]) in CLOUD_SUFFIXES:
         require_meaning(name, CLOUD, {"band": band, "nodata": nodata})
         return _terrain_of_las(

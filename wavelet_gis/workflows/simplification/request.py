@@ -79,7 +79,7 @@ def request_for(
     """
     has_max_error = max_error is not None or zones is not None
     if zones is not None and (vertices is not None or max_rms is not None):
-        raise OptionError("{0} are of {1}; leave them out.", "zones", "max_error")
+        raise OptionError("{0} go with {1} only; leave them out.", "zones", "max_error")
     if (vertices is not None) + has_max_error + (max_rms is not None) != 1:
         raise OptionError("give one of {0}, {1} and {2}.", "vertices", "max_error", "max_rms")
     _require_sensible_rounds(refine, fit=fit, keep_points=keep_points)
