@@ -1,6 +1,7 @@
 """Imports run one way: between the layers, between the rooms of a layer, and in no circle."""
 
 import ast
+import re
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -238,6 +239,19 @@ def test_every_room_has_its_place_in_the_order():
     for layer, order in ROOMS.items():
         rooms = {room_of(name) for name in our_modules() if name.split(".")[0] == layer} - {""}
         assert rooms <= set(order), f"{layer}: {sorted(rooms - set(order))}"
+
+
+def rooms_on_the_map(text: str, layer: str) -> list[str]:
+    """Return the folders and modules that the map of a layer lists, in its order."""
+    table = text.partition(f"| `{layer}`, ")[2].partition("\n\n")[0]
+    cells = [row.split("|")[1] for row in table.splitlines() if row.startswith("| `")]
+    return [name.strip("/") for cell in cells for name in re.findall(r"`(\w+/?)`", cell)]
+
+
+@pytest.mark.parametrize("layer", ROOMS)
+def test_the_map_of_the_house_lists_every_room_in_the_order_of_imports(layer):
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    assert rooms_on_the_map(text, layer) == list(ROOMS[layer])
 
 
 #: Folders that hold one file for each row of a table, however many there are.

@@ -189,10 +189,6 @@ def filter_pyramid(
     single = list(gains.items() if isinstance(gains, dict) else gains)
     asks_scales = bool(single) or levels is not None or metres is not None or drop_coarse
     asks_denoising = denoise is not False
-    if not asks_scales and not asks_denoising:
-        raise OptionError(
-            "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
-        )
     of_noise = {
         "noise_range": noise_range != 0.0,
         "local_noise": local_noise,
@@ -200,9 +196,7 @@ def filter_pyramid(
         "n_pyramids": n_pyramids is not None,
         "channels": channels is not None,
     }
-    in_vain = [name for name, is_given in of_noise.items() if is_given]
-    if in_vain and not asks_denoising:
-        raise OptionError("{0} is for {1}; give {1} too, or leave {0} out.", in_vain[0], "denoise")
+    _require_work(of_noise, asks_scales=asks_scales, asks_denoising=asks_denoising)
     n_pyramids = N_PYRAMIDS if n_pyramids is None else n_pyramids
     require_levels(geo)
     builds_levels = metres is not None and not _has_sizes(geo, metres)
@@ -284,65 +278,84 @@ def denoised(
     OptionError
         An unknown channel or a negative number; nothing has been computed yet.
     """
-    pyramid, sigmas = geo.pyramid, dict[str, float]()
+    _require_noise(
+        geo, channels, n_pyramids, has_kind=noise_range != 0.0 or local_noise or outliers
+    )
+    reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
+    pyramid, sigmas, described = geo.pyramid, dict[str, float](), []
+    for k, name in enumerate(channels):
+        mesh = pyramid.synthesise() if k > 0 or finest is None else finest
+        unit = geo.frame.z_scale if name == "z" else 1.0
+        given = None if sigma is None else sigma * unit
+        part = part_of(progress, k / len(channels), (k + 1) / len(channels))
+        if n_pyramids == 0:
+            noise = Noise(_noise_of(pyramid, mesh, name) if given is None else given)
+            pyramid = pyramid.denoised(noise.sigma, channels=[name], finest=mesh, progress=part)
+        else:
+            found: dict[str, Noise] = {}
+            clean = denoise(
+                mesh,
+                given,
+                n_pyramids=n_pyramids,
+                channels=[name],
+                locked=pyramid.locked,
+                noise_range=reach,
+                local_noise=local_noise,
+                outliers=outliers,
+                found=found,
+                progress=part,
+            )
+            noise, pyramid = found[name], relifted(pyramid, clean)
+            _note_outliers(geo.source_name, name, noise)
+            if noise.is_rough:
+                _warn_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
+        sigmas[name] = noise.sigma / unit
+        described.append(f"{name} {_in_file(noise, unit, _metre(geo)).describe()}")
+    how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
+    line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
+    return geo.with_pyramid(pyramid, line), sigmas
+
+
+def _require_work(of_noise: dict[str, bool], *, asks_scales: bool, asks_denoising: bool) -> None:
+    """Refuse to change nothing, and options of denoising without it."""
+    if not asks_scales and not asks_denoising:
+        raise OptionError(
+            "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
+        )
+    in_vain = [name for name, is_given in of_noise.items() if is_given]
+    if in_vain and not asks_denoising:
+        raise OptionError("{0} is for {1}; give {1} too, or leave {0} out.", in_vain[0], "denoise")
+
+
+def _require_noise(
+    geo: GeoPyramid, channels: Sequence[str], n_pyramids: int, *, has_kind: bool
+) -> None:
+    """Refuse channels without noise, and noise of a kind that thresholds do not know."""
     for name in channels:
-        channel_index(pyramid.channels, name)
+        channel_index(geo.pyramid.channels, name)
         if name in geo.categories:
             raise OptionError(
                 "{name} is a category and has no noise; name another channel.",
                 "channels",
                 name=name,
             )
-    if n_pyramids == 0 and (noise_range != 0.0 or local_noise or outliers):
+    if n_pyramids == 0 and has_kind:
         raise OptionError(
             "thresholds assume white noise; leave out {0}, {1} and {2}, or average one or more "
             "pyramids with {3}.",
             *NOISE_OPTIONS,
             "n_pyramids",
         )
-    reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
-    described = []
-    mesh = pyramid.synthesise() if finest is None else finest
-    for k, name in enumerate(channels):
-        if k > 0:
-            mesh = pyramid.synthesise()
-        unit = geo.frame.z_scale if name == "z" else 1.0
-        part = part_of(progress, k / len(channels), (k + 1) / len(channels))
-        if n_pyramids == 0:
-            deviation = _noise_of(pyramid, mesh, name) if sigma is None else sigma * unit
-            sigmas[name] = deviation / unit
-            described.append(f"{name} {sigmas[name]:.4g}")
-            pyramid = pyramid.denoised(deviation, channels=[name], finest=mesh, progress=part)
-            continue
-        found: dict[str, Noise] = {}
-        clean = denoise(
-            mesh,
-            None if sigma is None else sigma * unit,
-            n_pyramids=n_pyramids,
-            channels=[name],
-            locked=pyramid.locked,
-            noise_range=reach,
-            local_noise=local_noise,
-            outliers=outliers,
-            found=found,
-            progress=part,
-        )
-        noise = found[name]
-        _note_outliers(geo.source_name, name, noise)
-        if noise.is_rough:
-            _warn_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
-        sigmas[name] = noise.sigma / unit
-        in_file = replace(
-            noise,
-            sigma=noise.sigma / unit,
-            quantum=noise.quantum / unit,
-            reach=noise.reach / _metre(geo),
-        )
-        described.append(f"{name} {in_file.describe()}")
-        pyramid = relifted(pyramid, clean)
-    how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
-    line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
-    return geo.with_pyramid(pyramid, line), sigmas
+
+
+def _in_file(noise: Noise, unit: float, metre: float) -> Noise:
+    """Return noise in the units of the input."""
+    return replace(
+        noise,
+        sigma=noise.sigma / unit,
+        quantum=noise.quantum / unit,
+        reach=noise.reach / metre,
+    )
 
 
 def _warn_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
