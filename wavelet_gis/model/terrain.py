@@ -17,12 +17,13 @@ from wavelet_gis.crs.frame import (
     working_frame,
 )
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
-from wavelet_gis.model.dem import Dem, RasterOrigin, dem_mesh, grid_bounds, require_sound
+from wavelet_gis.model.dem import Dem, dem_mesh, grid_bounds, require_sound
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.origin import Origin, Original
 from wavelet_gis.model.points.cloud import PointCloud, cloud_bounds
 from wavelet_gis.model.points.mesh import cloud_mesh
+from wavelet_gis.model.raster_origin import RasterOrigin
 from wavelet_gis.notes import Note, collected, note, warn
 
 __all__ = [
