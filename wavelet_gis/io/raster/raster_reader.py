@@ -159,7 +159,7 @@ def _read_band(
         )
     if band is None and dataset.count > 1:
         raise InputFileError(
-            "{path}: the raster has {n_bands} bands; choose the one with the elevations with {0}.",
+            "{path}: the raster has {n_bands} bands; choose the elevation band with {0}.",
             "band",
             path=path,
             n_bands=dataset.count,
