@@ -61,6 +61,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         return {
             "analysis": tr("Analysis"),
             "reconstruction": tr("Reconstruction"),
+            "readoff": tr("Read off"),
             "details": tr("Details"),
             "quality": tr("Quality"),
         }[self.GROUP]

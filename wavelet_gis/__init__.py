@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from wavelet_gis.report.page import report_page
+    from wavelet_gis.report.profile_plot import profile_page
     from wavelet_gis.tiles.globe.tileset import Tileset, terrain_tiles
     from wavelet_gis.tiles.read import Region, extract_region, restored_raster
     from wavelet_gis.tiles.tile import Tiled, tile_rasters
@@ -29,15 +30,23 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.learning.labels import labels_from_las, labels_from_layer
     from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.open import open_data as open
+    from wavelet_gis.workflows.read_off.contours import Contours, contours
+    from wavelet_gis.workflows.read_off.difference import Difference, difference
+    from wavelet_gis.workflows.read_off.profile import Profile, profile
+    from wavelet_gis.workflows.read_off.quality import LevelQuality, mesh_quality
     from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
     from wavelet_gis.workflows.save import save
     from wavelet_gis.workflows.simplify import Simplified, simplify
 
 __all__ = [
     "Analysis",
+    "Contours",
     "Details",
+    "Difference",
     "Filtered",
     "Labelled",
+    "LevelQuality",
+    "Profile",
     "Reconstruction",
     "Region",
     "Simplified",
@@ -47,14 +56,19 @@ __all__ = [
     "analyse",
     "classify",
     "cluster",
+    "contours",
     "details",
+    "difference",
     "extract",
     "extract_region",
     "filter",
     "labels_from_las",
     "labels_from_layer",
     "load",
+    "mesh_quality",
     "open",
+    "profile",
+    "profile_page",
     "reconstruct",
     "report_page",
     "restored_raster",
@@ -77,6 +91,15 @@ _HOMES = {
     "Tiled": "tiles.tile:Tiled",
     "Tileset": "tiles.globe.tileset:Tileset",
     "analyse": "workflows.analyse:analyse",
+    "Contours": "workflows.read_off.contours:Contours",
+    "Difference": "workflows.read_off.difference:Difference",
+    "LevelQuality": "workflows.read_off.quality:LevelQuality",
+    "Profile": "workflows.read_off.profile:Profile",
+    "contours": "workflows.read_off.contours:contours",
+    "difference": "workflows.read_off.difference:difference",
+    "mesh_quality": "workflows.read_off.quality:mesh_quality",
+    "profile": "workflows.read_off.profile:profile",
+    "profile_page": "report.profile_plot:profile_page",
     "classify": "workflows.learning.cluster:classify",
     "cluster": "workflows.learning.cluster:cluster",
     "details": "workflows.details:details",

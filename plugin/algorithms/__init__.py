@@ -9,10 +9,14 @@ from .analyse_tin import AnalyseTin
 from .cluster_details import ClusterDetails
 from .contours import Contours
 from .detail_layers import DetailLayers
+from .difference import Difference
 from .extract_level import ExtractLevel
 from .filter_levels import FilterLevels
+from .mesh_quality import MeshQuality
+from .profile import Profile
 from .quality_report import QualityReport
 from .reconstruct import Reconstruct
+from .shape_of_level import ShapeOfLevel
 from .simplify_dem import SimplifyDem
 from .simplify_point_cloud import SimplifyPointCloud
 from .thin_point_cloud import ThinPointCloud
@@ -26,8 +30,12 @@ ALGORITHMS = (
     SimplifyPointCloud,
     ThinPointCloud,
     ExtractLevel,
-    Contours,
     Reconstruct,
+    Contours,
+    Profile,
+    ShapeOfLevel,
+    Difference,
+    MeshQuality,
     FilterLevels,
     DetailLayers,
     ClusterDetails,

@@ -14,7 +14,13 @@ from ..parameters.analysis_options import (
     stop_rules,
 )
 from ..parameters.choices import choice
-from ..parameters.pyramid import add_figure_outputs, figures, log_levels, save
+from ..parameters.pyramid import (
+    add_figure_outputs,
+    add_map_parameter,
+    figures,
+    log_levels,
+    save,
+)
 from ..parameters.request import Request
 from ..ui.enums import POLYGONS
 from ..ui.translation import tr
@@ -55,6 +61,7 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
             ),
             advanced=True,
         )
+        add_map_parameter(self)
         self.add(
             QgsProcessingParameterFeatureSink(
                 "COARSE_TIN", tr("Coarse TIN"), POLYGONS, optional=True, createByDefault=True

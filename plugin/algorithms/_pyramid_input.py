@@ -9,6 +9,7 @@ from qgis.core import QgsProcessingParameterFile
 
 from ..base import TerrainWaveletsAlgorithm
 from ..parameters.request import Request
+from ..ui.known_pyramids import known_pyramids
 from ..ui.translation import tr
 
 if TYPE_CHECKING:
@@ -18,20 +19,40 @@ if TYPE_CHECKING:
 class PyramidAlgorithm(TerrainWaveletsAlgorithm):
     """Base of the algorithms that read a pyramid file."""
 
-    def add_pyramid_parameter(self) -> None:
-        """Declare INPUT."""
+    def add_pyramid_parameter(self, level: str = "") -> None:
+        """Declare INPUT.
+
+        Parameters
+        ----------
+        level : str, optional
+            The parameter that takes a level: its dialog shows the levels of the chosen pyramid.
+        """
+        parameter = QgsProcessingParameterFile(
+            "INPUT", tr("Pyramid"), extension="gpkg", fileFilter=tr("Pyramid (*.gpkg)")
+        )
+        # By name, for what is imported with it needs a window.
+        widgets = f"{known_pyramids.__module__.rpartition('.')[0]}.pyramid_widget"
+        parameter.setMetadata(
+            {"widget_wrapper": {"class": f"{widgets}.PyramidWrapper", "level": level}}
+        )
         self.add(
-            QgsProcessingParameterFile(
-                "INPUT", tr("Pyramid"), extension="gpkg", fileFilter=tr("Pyramid (*.gpkg)")
+            parameter,
+            tr(
+                "GeoPackage that one of the analyses made. Those of this session, temporary ones "
+                "too, and those with a layer in the project are in the list."
             ),
-            tr("GeoPackage that one of the analyses made."),
         )
 
     def refusal(self, request: Request) -> str | None:
-        """Refuse a file that is not there before anything is started."""
+        """Refuse a file that is not there, or levels that are no numbers, before the start."""
         path = request.input_file("INPUT")
         if not os.path.isfile(path):
             return tr("{}: there is no such file; choose a pyramid.").format(path)
+        if self.parameterDefinition("LEVELS") is not None:
+            try:
+                request.whole_numbers("LEVELS")
+            except ValueError:
+                return tr("Levels are numbers separated by commas, such as 0,4,8.")
         return None
 
     def geo_pyramid(

@@ -79,10 +79,13 @@ class ExtractLevel(PyramidAlgorithm):
 
     def declare(self) -> None:
         """Declare parameters and outputs."""
-        self.add_pyramid_parameter()
+        self.add_pyramid_parameter("LEVEL")
         self.add(
             QgsProcessingParameterNumber("LEVEL", tr("Level"), WHOLE_NUMBER, 0, minValue=0),
-            tr("0 is the coarsest; the number of levels is the input itself."),
+            tr(
+                "0 is the coarsest; the number of levels is the input itself. In the dialog, click "
+                "a row of the table of levels."
+            ),
         )
         self.add(
             QgsProcessingParameterNumber(

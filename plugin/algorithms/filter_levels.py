@@ -15,7 +15,7 @@ from qgis.core import (
 )
 
 from ..base import Values
-from ..parameters.pyramid import crs_of, save
+from ..parameters.pyramid import add_map_parameter, crs_of, save
 from ..parameters.request import Request
 from ..parameters.restored_output import (
     add_restored_outputs,
@@ -84,6 +84,7 @@ class FilterLevels(PyramidAlgorithm):
             ),
             tr("A pyramid file like the input, with the changed details."),
         )
+        add_map_parameter(self)
         add_restored_outputs(
             self,
             tr("Filtered DEM"),

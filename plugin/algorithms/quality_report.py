@@ -9,6 +9,7 @@ from qgis.core import QgsProcessingParameterFileDestination, QgsProcessingParame
 from ..base import Values
 from ..parameters.pyramid import add_figure_outputs, figures
 from ..parameters.request import Request
+from ..parameters.text_output import write_text_output
 from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
 
@@ -75,18 +76,8 @@ class QualityReport(PyramidAlgorithm):
         )
         add_figure_outputs(self)
 
-    def refusal(self, request: Request) -> str | None:
-        """Refuse levels that are no numbers."""
-        try:
-            request.whole_numbers("LEVELS")
-        except ValueError:
-            return tr("Levels are numbers separated by commas, such as 0,4,8.")
-        return super().refusal(request)
-
     def work(self, request: Request) -> Values:
         """Measure, draw, write."""
-        from wavelet_gis.io.atomic import new_file
-        from wavelet_gis.io.read_back import write_text
         from wavelet_gis.report.page import report_page
 
         geo = self.geo_pyramid(request)
@@ -95,18 +86,15 @@ class QualityReport(PyramidAlgorithm):
         page, numbers = request.computed(
             lambda work: report_page(geo, levels, work.progress), 0.1, 0.9
         )
-        texts = {"OUTPUT": page, "FIGURES": json.dumps(numbers, indent=1, allow_nan=False)}
         measured = (
             geo
             if geo.errors
             else request.computed(lambda work: geo.with_errors(work.progress), 0.9, 1.0)
         )
-        results = figures(measured)
-        for name, text in texts.items():
-            path = request.output_file(name)
-            if not path:
-                continue
-            with new_file(path, overwrite=True) as scratch:
-                write_text(scratch, text)
-            results[name] = path
-        return results
+        return {
+            **figures(measured),
+            **write_text_output(request, "OUTPUT", lambda: page),
+            **write_text_output(
+                request, "FIGURES", lambda: json.dumps(numbers, indent=1, allow_nan=False)
+            ),
+        }

@@ -16,6 +16,7 @@ from qgis.core import (
 from ..base import Values
 from ..parameters.analysis_options import add_design_parameters, design_options
 from ..parameters.mesh_output import add_mesh_parameter, mesh_packages
+from ..parameters.pyramid import add_map_parameter, save
 from ..parameters.request import Request
 from ..parameters.surface_output import (
     add_cell_size_parameter,
@@ -174,6 +175,7 @@ class SimplifyDem(DemInput):
             tr("The reversible pyramid whose coarsest level the TIN was made from."),
             advanced=True,
         )
+        add_map_parameter(self)
         self.add_more_outputs()
         self.addOutput(QgsProcessingOutputNumber("N_VERTICES", tr("Number of vertices")))
         self.addOutput(QgsProcessingOutputNumber("N_FACES", tr("Number of triangles")))
@@ -218,8 +220,6 @@ class SimplifyDem(DemInput):
     def work(self, request: Request) -> Values:
         """Read, simplify, measure, write what was asked for."""
         from wavelet_gis.workflows.simplify import simplify
-
-        from ..parameters.pyramid import save
 
         terrain = self.terrain(request)
         stages = {

@@ -250,7 +250,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
-    <source>GeoPackage that one of the analyses made.</source>
+    <source>GeoPackage that one of the analyses made. Those of this session, temporary ones too, and those with a layer in the project are in the list.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_pyramid_input.py"/>
+    <source>Levels are numbers separated by commas, such as 0,4,8.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -705,11 +710,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/contours.py"/>
-    <source>The features could not be written ({}); check the disk and the name.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/contours.py"/>
     <source>contour,contours,isolines,lines,elevation,tin,generalise,generalize,smooth,level,wavelet,pyramid</source>
     <translation type="unfinished"></translation>
   </message>
@@ -809,8 +809,113 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>0 is the coarsest.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>A DEM has its own cell size; leave the other one empty.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>A level of a pyramid less another level, or less a DEM, as a raster</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>DEM that is subtracted</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Difference of level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Difference of the surfaces</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Empty for the input itself, where there is no DEM either.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Give a level to subtract or a DEM, not both.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Highest difference, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>In the unit of the CRS, where no DEM is given. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Instead of a level; in the CRS of the pyramid. The result is on its grid.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Level less the other, in the unit of elevation: red is added, blue taken away.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Level that is subtracted</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Lowest difference, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Mean difference, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Root mean square difference, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Subtracting the surfaces</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Subtracts from the surface of one level that of another one, or a DEM: what a generalisation took away, or how a later survey differs at the scale of the level. Above 0 the level is the higher one.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>difference,dod,dem of difference,change,error,residual,compare,level,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>{}: its CRS is {}, that of the pyramid is {}; reproject it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>0 is the coarsest; the number of levels is the input itself.</source>
+    <source>0 is the coarsest; the number of levels is the input itself. In the dialog, click a row of the table of levels.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1174,6 +1279,206 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Angles, edges and areas of the triangles of every level, as a table</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Largest angle of the levels, in degrees</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Measures the triangles of each level in plan: what a solver asks of a mesh before it is taken. A sliver is a triangle with an angle below 10 degrees.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Measuring the triangles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Mesh quality</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Mesh quality by level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Numbers separated by commas; 0 is the coarsest. Empty for all.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>One row a level. Angles are in degrees, lengths in the unit of the CRS, metres for degrees; &lt;i&gt;low_angle&lt;/i&gt; is what 95 % of the smallest angles are above.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Shortest edge of the levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Smallest angle of the levels, in degrees</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>The features could not be written ({}); check the disk and the name.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>mesh quality,triangle quality,angle,sliver,edge length,area,statistics,table,tin,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Along the line, whose corners are points, too, in the unit of the CRS, metres for degrees. Empty for the spacing of the input.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>CSV (*.csv)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Distance between points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Distance, place and heights of every point, for other programs.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Fields: &lt;i&gt;line&lt;/i&gt;, &lt;i&gt;distance&lt;/i&gt;, and &lt;i&gt;z_…&lt;/i&gt; with the height of each level; NULL where it covers nothing.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>HTML page (*.html)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Heights along lines at several levels of a pyramid, as points, table and plot</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Largest difference from the finest level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Length of all lines</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Lines</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Lines to walk along, in any CRS; each has charts of its own in the plot.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>No output is chosen; choose points, a plot, a picture or a table.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Number of lines</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Numbers separated by commas; 0 is the coarsest. Empty for the input, those with about a quarter and a twentieth of its vertices, and the coarsest.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Opens in the results viewer and in any browser.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Picture of the profile</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Plot of the profile</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Points of the profile</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Profile along lines</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>SVG (*.svg)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Table of the profile</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>The same plot for print layouts and reports.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Walking along the lines</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Walks along lines and reads off the height of several levels of a pyramid. The plot shows them one above the other, and below, how far each is off the finest. The points carry the distance from the begin of their line and a height for each level.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>line   level  RMS off the finest  largest</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>profile,section,cross section,transect,elevation profile,plot,chart,level,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>{}: there is no line; check the layer and its selection.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>All numbers of the report, for other programs.</source>
     <translation type="unfinished"></translation>
@@ -1181,16 +1486,6 @@
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>Figures of the report</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>HTML page (*.html)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>Levels are numbers separated by commas, such as 0,4,8.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1206,11 +1501,6 @@
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>Numbers separated by commas. Empty for those with about a quarter and a twentieth of the vertices, and the coarsest.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>Opens in the results viewer and in any browser.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1281,6 +1571,91 @@
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
     <source>synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>0 is the coarsest. Empty for the input itself.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect and curvature of the surface of one level, each as smooth as the level.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Across the descent; spurs are above 0, hollows below.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Along the descent, in one over the unit of length; convex is above 0.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Aspect</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Direction of descent, degrees clockwise from north; nothing on the flat.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Mean curvature</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Measuring the shape of the surface</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>No output is chosen; choose a raster.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Profile curvature</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Ridges and hilltops are above 0, channels and pits below.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Slope</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Slope, aspect and curvature of level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Steepest, in degrees.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Tangential curvature</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>The shape of the terrain at the scale of one level of a pyramid, as rasters</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>slope,aspect,curvature,profile curvature,plan curvature,tangential,geomorphometry,terrain analysis,derivatives,scale,level,pyramid,wavelet</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1530,6 +1905,11 @@
   </message>
   <message>
     <location filename="../../plugin/base.py"/>
+    <source>Read off</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
     <source>Reconstruction</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1750,12 +2130,22 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Add the pyramid to the map</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Input points that the coarsest surface does not cover</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Largest error of the coarsest surface, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Opens the layers in the pyramid file, with their styles, when it is written.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1796,6 +2186,11 @@
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Writing the pyramid</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>level   vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1980,11 +2375,6 @@
   </message>
   <message>
     <location filename="../../plugin/qgis_io/vectors.py"/>
-    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>{}: the points have no Z; choose the field with the elevation.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -2064,6 +2454,16 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{} (temporary)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{}: {}, {} levels</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/ui/layer_styles.py"/>
     <source>level {}</source>
     <translation type="unfinished"></translation>
@@ -2076,6 +2476,36 @@
   <message>
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>Select a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>not measured</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -250,8 +250,13 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
-    <source>GeoPackage that one of the analyses made.</source>
-    <translation>GeoPackage, das eine der Analysen erzeugt hat.</translation>
+    <source>GeoPackage that one of the analyses made. Those of this session, temporary ones too, and those with a layer in the project are in the list.</source>
+    <translation>GeoPackage, das eine der Analysen erzeugt hat. Die dieser Sitzung, auch temporäre, und die mit einem Layer im Projekt stehen in der Liste.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_pyramid_input.py"/>
+    <source>Levels are numbers separated by commas, such as 0,4,8.</source>
+    <translation>Stufen sind Zahlen mit Kommas dazwischen, etwa 0,4,8.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
@@ -705,11 +710,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/contours.py"/>
-    <source>The features could not be written ({}); check the disk and the name.</source>
-    <translation>Die Objekte konnten nicht geschrieben werden ({}); prüfen Sie den Datenträger und den Namen.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/contours.py"/>
     <source>contour,contours,isolines,lines,elevation,tin,generalise,generalize,smooth,level,wavelet,pyramid</source>
     <translation>höhenlinien,isolinien,contour,contours,isolines,lines,elevation,tin,generalisieren,generalise,generalize,smooth,stufe,level,wavelet,pyramide,pyramid</translation>
   </message>
@@ -809,9 +809,114 @@
     <translation>wavelet-koeffizienten,wavelet coefficients,detail,größe,scale,vertex-frequency,punkte,points,pyramide,pyramid</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>0 is the coarsest.</source>
+    <translation>0 ist die gröbste.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>A DEM has its own cell size; leave the other one empty.</source>
+    <translation>Ein DGM hat seine eigene Zellgröße; die andere leer lassen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>A level of a pyramid less another level, or less a DEM, as a raster</source>
+    <translation>Eine Stufe einer Pyramide weniger eine andere, oder weniger ein DGM, als Raster</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>DEM that is subtracted</source>
+    <translation>DGM, das abgezogen wird</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Difference of level</source>
+    <translation>Differenz einer Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Difference of the surfaces</source>
+    <translation>Differenz der Oberflächen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Empty for the input itself, where there is no DEM either.</source>
+    <translation>Leer für die Eingabe selbst, wenn auch kein DGM da ist.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Give a level to subtract or a DEM, not both.</source>
+    <translation>Eine Stufe oder ein DGM zum Abziehen angeben, nicht beides.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Highest difference, in the unit of elevation</source>
+    <translation>Höchste Differenz, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>In the unit of the CRS, where no DEM is given. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
+    <translation>In der Einheit des KBS, wenn kein DGM angegeben ist. Leer für das Gitter des DGM, aus dem die Pyramide entstand, und bei Punkten ihr mittlerer Abstand.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Instead of a level; in the CRS of the pyramid. The result is on its grid.</source>
+    <translation>Statt einer Stufe; im KBS der Pyramide. Das Ergebnis liegt auf seinem Gitter.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Level less the other, in the unit of elevation: red is added, blue taken away.</source>
+    <translation>Stufe weniger die andere, in der Einheit der Höhe: Rot kam hinzu, Blau wurde weggenommen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Level that is subtracted</source>
+    <translation>Stufe, die abgezogen wird</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Lowest difference, in the unit of elevation</source>
+    <translation>Niedrigste Differenz, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Mean difference, in the unit of elevation</source>
+    <translation>Mittlere Differenz, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Root mean square difference, in the unit of elevation</source>
+    <translation>Quadratisches Mittel der Differenz, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Subtracting the surfaces</source>
+    <translation>Abziehen der Oberflächen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>Subtracts from the surface of one level that of another one, or a DEM: what a generalisation took away, or how a later survey differs at the scale of the level. Above 0 the level is the higher one.</source>
+    <translation>Zieht von der Oberfläche einer Stufe die einer anderen oder ein DGM ab: was eine Generalisierung wegnahm, oder wie sich eine spätere Aufnahme im Maßstab der Stufe unterscheidet. Über 0 liegt die Stufe höher.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>difference,dod,dem of difference,change,error,residual,compare,level,pyramid,wavelet</source>
+    <translation>Differenz,DoD,Höhendifferenz,Änderung,Fehler,Residuum,Vergleich,Stufe,Pyramide,Wavelet</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>{}: its CRS is {}, that of the pyramid is {}; reproject it.</source>
+    <translation>{}: sein KBS ist {}, das der Pyramide ist {}; umprojizieren.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/difference.py"/>
+    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
+    <translation>{}: Von diesem Layer und dem Gelände hat nur eines ein KBS, deshalb gelten ihre Koordinaten als gleichartig (weisen Sie das fehlende KBS zu)</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>0 is the coarsest; the number of levels is the input itself.</source>
-    <translation>0 ist die gröbste; die Anzahl der Stufen ist die Eingabe selbst.</translation>
+    <source>0 is the coarsest; the number of levels is the input itself. In the dialog, click a row of the table of levels.</source>
+    <translation>0 ist die gröbste; die Anzahl der Stufen ist die Eingabe selbst. Im Dialog: eine Zeile der Tabelle der Stufen anklicken.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
@@ -1174,6 +1279,206 @@
     <translation>entrauschen,glätten,schärfen,generalisieren,denoise,smooth,sharpen,generalise,generalize,band,equaliser,filter,gain,wavelet,pyramide,pyramid</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Angles, edges and areas of the triangles of every level, as a table</source>
+    <translation>Winkel, Kanten und Flächen der Dreiecke jeder Stufe als Tabelle</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Largest angle of the levels, in degrees</source>
+    <translation>Größter Winkel der Stufen, in Grad</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Levels</source>
+    <translation>Stufen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Measures the triangles of each level in plan: what a solver asks of a mesh before it is taken. A sliver is a triangle with an angle below 10 degrees.</source>
+    <translation>Misst die Dreiecke jeder Stufe im Grundriss: was ein Löser von einem Netz verlangt. Ein Splitter ist ein Dreieck mit einem Winkel unter 10 Grad.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Measuring the triangles</source>
+    <translation>Messen der Dreiecke</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Mesh quality</source>
+    <translation>Netzqualität</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Mesh quality by level</source>
+    <translation>Netzqualität je Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Numbers separated by commas; 0 is the coarsest. Empty for all.</source>
+    <translation>Zahlen, durch Kommas getrennt; 0 ist die gröbste. Leer für alle.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>One row a level. Angles are in degrees, lengths in the unit of the CRS, metres for degrees; &lt;i&gt;low_angle&lt;/i&gt; is what 95 % of the smallest angles are above.</source>
+    <translation>Eine Zeile je Stufe. Winkel in Grad, Längen in der Einheit des KBS, bei Grad in Metern; über &lt;i&gt;low_angle&lt;/i&gt; liegen 95 % der kleinsten Winkel.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Shortest edge of the levels</source>
+    <translation>Kürzeste Kante der Stufen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>Smallest angle of the levels, in degrees</source>
+    <translation>Kleinster Winkel der Stufen, in Grad</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>The features could not be written ({}); check the disk and the name.</source>
+    <translation>Die Objekte konnten nicht geschrieben werden ({}); prüfen Sie den Datenträger und den Namen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/mesh_quality.py"/>
+    <source>mesh quality,triangle quality,angle,sliver,edge length,area,statistics,table,tin,pyramid,wavelet</source>
+    <translation>Netzqualität,Dreiecksqualität,Winkel,Splitter,Kantenlänge,Fläche,Statistik,Tabelle,TIN,Pyramide,Wavelet</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Along the line, whose corners are points, too, in the unit of the CRS, metres for degrees. Empty for the spacing of the input.</source>
+    <translation>Entlang der Linie, deren Ecken auch Punkte sind, in der Einheit des KBS, bei Grad in Metern. Leer für den Abstand der Eingabe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>CSV (*.csv)</source>
+    <translation>CSV (*.csv)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Distance between points</source>
+    <translation>Abstand der Punkte</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Distance, place and heights of every point, for other programs.</source>
+    <translation>Entfernung, Ort und Höhen jedes Punktes, für andere Programme.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Fields: &lt;i&gt;line&lt;/i&gt;, &lt;i&gt;distance&lt;/i&gt;, and &lt;i&gt;z_…&lt;/i&gt; with the height of each level; NULL where it covers nothing.</source>
+    <translation>Felder: &lt;i&gt;line&lt;/i&gt;, &lt;i&gt;distance&lt;/i&gt; und &lt;i&gt;z_…&lt;/i&gt; mit der Höhe jeder Stufe; NULL, wo sie nichts bedeckt.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>HTML page (*.html)</source>
+    <translation>HTML-Seite (*.html)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Heights along lines at several levels of a pyramid, as points, table and plot</source>
+    <translation>Höhen entlang von Linien auf mehreren Stufen einer Pyramide, als Punkte, Tabelle und Diagramm</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Largest difference from the finest level</source>
+    <translation>Größter Unterschied zur feinsten Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Length of all lines</source>
+    <translation>Länge aller Linien</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Lines</source>
+    <translation>Linien</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Lines to walk along, in any CRS; each has charts of its own in the plot.</source>
+    <translation>Linien, denen gefolgt wird, in beliebigem KBS; jede hat eigene Diagramme.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>No output is chosen; choose points, a plot, a picture or a table.</source>
+    <translation>Keine Ausgabe gewählt; Punkte, Diagramm, Bild oder Tabelle wählen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Number of lines</source>
+    <translation>Anzahl der Linien</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Numbers separated by commas; 0 is the coarsest. Empty for the input, those with about a quarter and a twentieth of its vertices, and the coarsest.</source>
+    <translation>Zahlen, durch Kommas getrennt; 0 ist die gröbste. Leer für die Eingabe, die mit etwa einem Viertel und einem Zwanzigstel ihrer Stützpunkte, und die gröbste.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Opens in the results viewer and in any browser.</source>
+    <translation>Öffnet sich im Ergebnisfenster und in jedem Browser.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Picture of the profile</source>
+    <translation>Bild des Profils</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Plot of the profile</source>
+    <translation>Diagramm des Profils</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Points of the profile</source>
+    <translation>Punkte des Profils</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Profile along lines</source>
+    <translation>Profil entlang von Linien</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>SVG (*.svg)</source>
+    <translation>SVG (*.svg)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Table of the profile</source>
+    <translation>Tabelle des Profils</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>The same plot for print layouts and reports.</source>
+    <translation>Dasselbe Diagramm für Drucklayouts und Berichte.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Walking along the lines</source>
+    <translation>Die Linien werden abgeschritten</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>Walks along lines and reads off the height of several levels of a pyramid. The plot shows them one above the other, and below, how far each is off the finest. The points carry the distance from the begin of their line and a height for each level.</source>
+    <translation>Schreitet Linien ab und liest die Höhe mehrerer Stufen einer Pyramide ab. Das Diagramm zeigt sie übereinander, und darunter, wie weit jede von der feinsten abweicht. Die Punkte tragen die Entfernung vom Anfang ihrer Linie und eine Höhe je Stufe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>line   level  RMS off the finest  largest</source>
+    <translation>Linie  Stufe  RMS zur feinsten    größter</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>profile,section,cross section,transect,elevation profile,plot,chart,level,pyramid,wavelet</source>
+    <translation>Profil,Schnitt,Querschnitt,Transekt,Höhenprofil,Diagramm,Stufe,Pyramide,Wavelet</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/profile.py"/>
+    <source>{}: there is no line; check the layer and its selection.</source>
+    <translation>{}: es gibt keine Linie; den Layer und seine Auswahl prüfen.</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>All numbers of the report, for other programs.</source>
     <translation>Alle Zahlen des Berichts, für andere Programme.</translation>
@@ -1182,16 +1487,6 @@
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>Figures of the report</source>
     <translation>Zahlen des Berichts</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>HTML page (*.html)</source>
-    <translation>HTML-Seite (*.html)</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>Levels are numbers separated by commas, such as 0,4,8.</source>
-    <translation>Stufen sind Zahlen mit Kommas dazwischen, etwa 0,4,8.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
@@ -1207,11 +1502,6 @@
     <location filename="../../plugin/algorithms/quality_report.py"/>
     <source>Numbers separated by commas. Empty for those with about a quarter and a twentieth of the vertices, and the coarsest.</source>
     <translation>Zahlen mit Kommas dazwischen. Leer für die mit etwa einem Viertel und einem Zwanzigstel der Punkte, und die gröbste.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/quality_report.py"/>
-    <source>Opens in the results viewer and in any browser.</source>
-    <translation>Öffnet sich im Ergebnisfenster und in jedem Browser.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/quality_report.py"/>
@@ -1282,6 +1572,91 @@
     <location filename="../../plugin/algorithms/reconstruct.py"/>
     <source>synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original</source>
     <translation>synthese,umkehrung,wiederherstellen,synthesis,inverse,dgm,dem,las,laz,tin,wavelet,pyramide,pyramid,original</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>0 is the coarsest. Empty for the input itself.</source>
+    <translation>0 ist die gröbste. Leer für die Eingabe selbst.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect and curvature of the surface of one level, each as smooth as the level.</source>
+    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition und Krümmung der Oberfläche einer Stufe, so glatt wie die Stufe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Across the descent; spurs are above 0, hollows below.</source>
+    <translation>Quer zum Gefälle; Sporne über 0, Mulden darunter.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Along the descent, in one over the unit of length; convex is above 0.</source>
+    <translation>Entlang des Gefälles, in eins durch die Längeneinheit; konvex ist über 0.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Aspect</source>
+    <translation>Exposition</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Direction of descent, degrees clockwise from north; nothing on the flat.</source>
+    <translation>Richtung des Gefälles, Grad im Uhrzeigersinn von Nord; nichts auf ebenem Grund.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Mean curvature</source>
+    <translation>Mittlere Krümmung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Measuring the shape of the surface</source>
+    <translation>Messen der Form der Oberfläche</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>No output is chosen; choose a raster.</source>
+    <translation>Keine Ausgabe gewählt; ein Raster wählen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Profile curvature</source>
+    <translation>Profilkrümmung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Ridges and hilltops are above 0, channels and pits below.</source>
+    <translation>Rücken und Kuppen über 0, Rinnen und Senken darunter.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Slope</source>
+    <translation>Neigung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Slope, aspect and curvature of level</source>
+    <translation>Neigung, Exposition und Krümmung einer Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Steepest, in degrees.</source>
+    <translation>Steilste, in Grad.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Tangential curvature</source>
+    <translation>Tangentialkrümmung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>The shape of the terrain at the scale of one level of a pyramid, as rasters</source>
+    <translation>Die Form des Geländes im Maßstab einer Stufe einer Pyramide, als Raster</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>slope,aspect,curvature,profile curvature,plan curvature,tangential,geomorphometry,terrain analysis,derivatives,scale,level,pyramid,wavelet</source>
+    <translation>Neigung,Exposition,Krümmung,Profilkrümmung,Horizontalkrümmung,Tangentialkrümmung,Geomorphometrie,Geländeanalyse,Ableitungen,Maßstab,Stufe,Pyramide,Wavelet</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
@@ -1530,6 +1905,11 @@
   </message>
   <message>
     <location filename="../../plugin/base.py"/>
+    <source>Read off</source>
+    <translation>Ablesen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/base.py"/>
     <source>Reconstruction</source>
     <translation>Wiederherstellung</translation>
   </message>
@@ -1750,6 +2130,11 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Add the pyramid to the map</source>
+    <translation>Pyramide zur Karte hinzufügen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Input points that the coarsest surface does not cover</source>
     <translation>Punkte der Eingabe, die die gröbste Fläche nicht bedeckt</translation>
   </message>
@@ -1757,6 +2142,11 @@
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Largest error of the coarsest surface, in the unit of elevation</source>
     <translation>Größter Fehler der gröbsten Fläche, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>Opens the layers in the pyramid file, with their styles, when it is written.</source>
+    <translation>Öffnet die Layer der Pyramidendatei mit ihren Stilen, sobald sie geschrieben ist.</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
@@ -1797,6 +2187,11 @@
     <location filename="../../plugin/parameters/pyramid.py"/>
     <source>Writing the pyramid</source>
     <translation>Schreiben der Pyramide</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>level   vertices</source>
+    <translation>Stufe  Stützpunkte</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/pyramid.py"/>
@@ -1980,11 +2375,6 @@
   </message>
   <message>
     <location filename="../../plugin/qgis_io/vectors.py"/>
-    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
-    <translation>{}: Von diesem Layer und dem Gelände hat nur eines ein KBS, deshalb gelten ihre Koordinaten als gleichartig (weisen Sie das fehlende KBS zu)</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/qgis_io/vectors.py"/>
     <source>{}: the points have no Z; choose the field with the elevation.</source>
     <translation>{}: Die Punkte haben kein Z; wählen Sie das Feld mit der Höhe.</translation>
   </message>
@@ -2064,6 +2454,16 @@
     <translation>zwei- bis siebenmal so schnell</translation>
   </message>
   <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{} (temporary)</source>
+    <translation>{} (temporär)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/known_pyramids.py"/>
+    <source>{}: {}, {} levels</source>
+    <translation>{}: {}, {} Stufen</translation>
+  </message>
+  <message>
     <location filename="../../plugin/ui/layer_styles.py"/>
     <source>level {}</source>
     <translation>Stufe {}</translation>
@@ -2077,6 +2477,36 @@
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
     <translation>{}: {}; fehlt, zu installieren {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>Select a file</source>
+    <translation>Datei wählen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation>eine Pyramide dieses Projekts oder dieser Sitzung, oder eine Datei</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>largest error</source>
+    <translation>größter Fehler</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>level</source>
+    <translation>Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>not measured</source>
+    <translation>nicht gemessen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/pyramid_widget.py"/>
+    <source>vertices</source>
+    <translation>Stützpunkte</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>

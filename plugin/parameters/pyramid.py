@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingOutputNumber
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingContext,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterBoolean,
+)
 
 from ..qgis_io.crs_and_progress import is_geocentric
+from ..qgis_io.geopackage import layer_names
 from ..ui.exceptions import QgsProcessingException
+from ..ui.known_pyramids import remember
 from ..ui.translation import tr
 
 if TYPE_CHECKING:
@@ -60,7 +67,28 @@ def save(
                 request.progress(middle, stop),
                 n_features(geo, layers),
             )
+    remember(path)
+    _add_to_map(request, path)
     request.progress(middle, stop)(1.0)
+
+
+def add_map_parameter(algorithm: TerrainWaveletsAlgorithm) -> None:
+    """Declare ADD_TO_MAP, at which `save` looks."""
+    algorithm.add(
+        QgsProcessingParameterBoolean("ADD_TO_MAP", tr("Add the pyramid to the map"), False),
+        tr("Opens the layers in the pyramid file, with their styles, when it is written."),
+        advanced=True,
+    )
+
+
+def _add_to_map(request: Request, path: str) -> None:
+    """Let the layers of a pyramid file open, where that was asked for and there is a map."""
+    project = request.context.project()
+    if not request.flag("ADD_TO_MAP") or project is None:
+        return
+    for name in layer_names(path):
+        details = QgsProcessingContext.LayerDetails(name, project, name)
+        request.context.addLayerToLoadOnCompletion(f"{path}|layername={name}", details)
 
 
 def crs_of(geo: GeoPyramid) -> QgsCoordinateReferenceSystem:
@@ -134,8 +162,11 @@ def figures(geo: GeoPyramid) -> dict[str, Any]:
 
 
 def log_levels(request: Request, geo: GeoPyramid) -> None:
-    """Write the table of levels to the log, where their errors are known."""
+    """Write the table of levels to the log, with their errors where they are known."""
     if not geo.errors:  # they are measured on request only
+        request.say(tr("level   vertices"))
+        for level in range(geo.pyramid.n_levels + 1):
+            request.say(f"{level:5d} {geo.pyramid.n_vertices(level):10d}")
         return
     request.say(tr("level   vertices  triangles  RMSE of surface  largest error"))
     for errors in geo.errors:

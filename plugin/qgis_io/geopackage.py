@@ -8,8 +8,10 @@ CRS entry and the spatial index, so that the file is what it would be.
 from __future__ import annotations
 
 import os
+import sqlite3
 import struct
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import closing
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +34,15 @@ Path = str | os.PathLike[str]
 _GEOMETRY_TYPES = {"Point Z": ogr.wkbPoint25D, "Polygon Z": ogr.wkbPolygon25D}
 #: Rows inserted between two looks at the cancel button.
 CHUNK = 20_000
+
+
+def layer_names(path: Path) -> list[str]:
+    """Return the names of the layers with geometries in a GeoPackage, in order."""
+    with closing(sqlite3.connect(path)) as connection:
+        rows = connection.execute(
+            "SELECT table_name FROM gpkg_contents WHERE data_type = 'features' ORDER BY 1"
+        ).fetchall()
+    return [str(name) for (name,) in rows]
 
 
 def add_layers(

@@ -17,7 +17,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from ..ui.enums import DOUBLE, INTEGER, POINT_Z, POLYGON_Z
+from ..ui.enums import DOUBLE, INTEGER, LINE_Z, POINT_Z, POLYGON_Z
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from .crs_and_progress import require_running
@@ -191,7 +191,7 @@ def fields_of(layer: Layer) -> QgsFields:
 
 def wkb_type_of(layer: Layer) -> Any:
     """Return the geometry type of a ``wavelet_gis.products.layers.Layer``."""
-    return {"Point Z": POINT_Z, "Polygon Z": POLYGON_Z}[layer.geometry_type]
+    return {"Point Z": POINT_Z, "LineString Z": LINE_Z, "Polygon Z": POLYGON_Z}[layer.geometry_type]
 
 
 def add_layer(
@@ -221,7 +221,7 @@ def add_layer(
     fields = fields_of(layer)
     selected: Any = slice(None) if rows is None else rows
     geometries = layer.geometry[selected]
-    columns = [column[selected].tolist() for column in layer.fields.values()]
+    columns = [_values(column[selected]) for column in layer.fields.values()]
     for start in range(0, len(geometries), CHUNK):
         require_running(feedback)
         if report is not None:
@@ -241,6 +241,14 @@ def add_layer(
                 )
             )
     return len(geometries)
+
+
+def _values(column: NDArray[Any]) -> list[Any]:
+    """Return the values of a field, None for what is no number."""
+    values: list[Any] = column.tolist()
+    if column.dtype.kind != "f" or np.isfinite(column).all():
+        return values
+    return [None if value != value else value for value in values]
 
 
 def _features(source: QgsProcessingFeatureSource, feedback: QgsFeedback) -> Iterator[QgsFeature]:

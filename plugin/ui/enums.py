@@ -17,7 +17,6 @@ from qgis.core import (
     QgsProcessingParameterField,
     QgsProcessingParameterNumber,
     QgsProcessingUtils,
-    QgsSymbolLayer,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QMetaType, QVariant
@@ -33,6 +32,7 @@ _shader: Any = QgsColorRampShader.Type
 
 #: Kinds of layers that a parameter takes.
 POINTS, LINES, POLYGONS = _source.TypeVectorPoint, _source.TypeVectorLine, _source.TypeVectorPolygon
+TABLE = _source.TypeVector
 
 #: Folds a parameter away in the dialog.
 ADVANCED = _flag.FlagAdvanced
@@ -47,20 +47,13 @@ WKT_FOR_GDAL = _wkt.WKT_PREFERRED_GDAL
 #: Geometry types.
 POLYGON_GEOMETRY = _geometry.PolygonGeometry
 POINT_Z, LINE_Z, POLYGON_Z = _wkb.PointZ, _wkb.LineStringZ, _wkb.PolygonZ
+NO_GEOMETRY = _wkb.NoGeometry
 
 #: What a file holds that is loaded as a layer.
 MESH_LAYER = QgsProcessingUtils.LayerHint.Mesh
 
 #: Colours between those that are given.
 INTERPOLATED = _shader.Interpolated
-
-#: What of a line an expression says.
-_property: Any = QgsSymbolLayer
-LINE_WIDTH = (
-    _property.Property.StrokeWidth
-    if hasattr(_property.Property, "StrokeWidth")
-    else _property.PropertyStrokeWidth
-)
 
 #: Types of the fields of a layer.
 INTEGER: Any

@@ -13,20 +13,17 @@ from qgis.core import (
     QgsColorRampShader,
     QgsCoordinateReferenceSystem,
     QgsHillshadeRenderer,
-    QgsLineSymbol,
     QgsPalettedRasterRenderer,
     QgsProcessingLayerPostProcessorInterface,
-    QgsProperty,
     QgsRasterShader,
     QgsRendererCategory,
     QgsSingleBandPseudoColorRenderer,
-    QgsSingleSymbolRenderer,
     QgsVectorLayerUtils,
 )
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtXml import QDomDocument
 
-from .enums import INTERPOLATED, LINE_WIDTH
+from .enums import INTERPOLATED
 from .translation import tr
 
 if TYPE_CHECKING:
@@ -38,6 +35,10 @@ Colour = tuple[int, int, int]
 _DIVERGING = ((33, 102, 172), (146, 197, 222), (247, 247, 247), (244, 165, 130), (178, 24, 43))
 #: From nothing to much: matplotlib's magma, the dark end first.
 _SEQUENTIAL = ((0, 0, 4), (81, 18, 124), (183, 55, 121), (252, 137, 97), (252, 253, 191))
+#: From flat to steep: ColorBrewer's YlOrBr.
+_SLOPE = ((255, 255, 229), (254, 227, 145), (254, 153, 41), (204, 76, 2), (102, 37, 6))
+#: North, east, south, west, and north again: the slopes that the sun leaves are the dark ones.
+_COMPASS = ((52, 62, 104), (94, 145, 113), (250, 224, 137), (214, 112, 88), (52, 62, 104))
 #: Share of the cells, at either end, that a ramp leaves beyond its last colours.
 _TAIL = 0.02
 #: Cells of a raster that are looked at to choose the ramp.
@@ -133,12 +134,22 @@ def style_energy(layer: Any) -> None:
     _show_band(layer, band, 0.0, largest[band - 1] or 1.0, _SEQUENTIAL)
 
 
-def style_contours(layer: Any) -> None:
-    """Draw contours in brown, those of the index thick."""
-    symbol: Any = QgsLineSymbol.createSimple({"line_color": "133,91,52", "line_width": "0.15"})
-    width = QgsProperty.fromExpression('if("is_index", 0.4, 0.15)')
-    symbol.symbolLayer(0).setDataDefinedProperty(LINE_WIDTH, width)
-    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
+def style_shape(layer: Any, name: str) -> None:
+    """Show slope from flat to steep, aspect round the compass, curvature red where convex.
+
+    Parameters
+    ----------
+    layer : QgsRasterLayer
+        Of one band.
+    name : str
+        One of ``wavelet_core.SHAPE_NAMES``.
+    """
+    if name == "slope":
+        _show_band(layer, 1, 0.0, _range(layer, 1)[1] or 1.0, _SLOPE)
+    elif name == "aspect":
+        _show_band(layer, 1, 0.0, 360.0, _COMPASS)
+    else:
+        style_difference(layer)
 
 
 def style_labels(layer: Any, name: str) -> None:

@@ -327,7 +327,7 @@ class TestContours:
         marked = {f["elevation"] for f in layer.getFeatures() if f["is_index"]}
         assert marked
         assert all(height % 20 == 0 for height in marked)
-        symbol = layer.renderer().symbol().symbolLayer(0)
-        assert symbol.dataDefinedProperties().hasActiveProperties()
+        thin, thick = (category.symbol().width() for category in layer.renderer().categories())
+        assert thick > 2 * thin
         assert "FOUND_LEVEL = " in layer.metadata().abstract()
         project.clear()

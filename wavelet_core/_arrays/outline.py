@@ -17,7 +17,7 @@ def nearest_on_edge(x, y, px, py, qx, qy):
     ex, ey = qx - px, qy - py
     inside = (px - x) * (qy - y) - (py - y) * (qx - x) <= 0.0
     along = ((x - px) * ex + (y - py) * ey) / (ex * ex + ey * ey)
-    along = np.minimum(np.maximum(along, 0.0), 1.0)
+    along = np.minimum(np.maximum(along, 0.0), 1.0) + 0.0  # no -0.0
     return (
         np.where(inside, x, px + along * ex),
         np.where(inside, y, py + along * ey),

@@ -84,7 +84,7 @@ def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, 
     size = np.diff(indptr)
     row, place = expanded(indptr[:-1], size)
     check_links(0, len(odd), odd, ring[indptr[:-1]], mesh, is_taken)
-    _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken)
+    _refuse_doubled_edges(odd, indptr, ring, ring_faces, mesh, row, place, is_taken)
     vertex_lives[odd[is_taken]] = False
     a = ring[indptr[:-1]]
     with_face = is_taken[row] & (ring_faces >= 0)
@@ -102,44 +102,37 @@ def collapse_all(odd, indptr, ring, ring_faces, mesh, vertex_lives, face_lives, 
     _close_faces(ring_faces[closes], apex, mesh, face_lives)
 
 
-def _refuse_doubled_edges(indptr, ring, mesh, face_lives, row, place, is_taken):
+def _refuse_doubled_edges(odd, indptr, ring, ring_faces, mesh, row, place, is_taken):
     """Refuse what an edge forbids that a collapse before it in the list has made.
 
     No two odd vertices are neighbours, so a collapse takes no edge between vertices that stay; it
-    only makes edges from its target to the rest of its ring. Of two that make one, the first does.
+    only makes edges from its target to the rest of its ring but the two beside the target. Of two
+    that make one, the first does. As the link condition, this looks around one fan of the target.
     """
-    a = ring[indptr[:-1]]
     n = len(mesh.outgoing)
-    # edges of the level that leave a target
-    half_edges = (3 * np.flatnonzero(face_lives)[:, None] + np.arange(3)).ravel()
-    tail, head = mesh.origin[half_edges], mesh.origin[after(half_edges)]
-    is_target = np.zeros(n, dtype=bool)
-    is_target[a] = True
-    tail, head = np.concatenate([tail, head]), np.concatenate([head, tail])
-    asked = is_target[tail]
-    edges = np.unique(tail[asked].astype(np.int64) * n + head[asked])
+    a = ring[indptr[:-1]]
+    joins = is_taken[row] & (place > indptr[row])
+    is_beside = ((place == indptr[row] + 1) & (ring_faces[indptr[row]] >= 0)) | (
+        (place == indptr[row + 1] - 1) & (ring_faces[place] >= 0)
+    )
     spokes = a[row].astype(np.int64) * n + ring[place]
-    makes = is_taken[row] & (place > indptr[row]) & ~_contains(edges, spokes)
-    made, maker = spokes[makes], row[makes]
-    mirrored = ring[place[makes]].astype(np.int64) * n + a[maker]
-    keys, makers = np.concatenate([made, mirrored]), np.concatenate([maker, maker])
+    makes = joins & ~is_beside
+    mirrored = ring[place[makes]].astype(np.int64) * n + a[row[makes]]
+    keys, makers = np.concatenate([spokes[makes], mirrored]), np.tile(row[makes], 2)
     order = np.argsort(keys, kind="stable")
     keys, makers = keys[order], makers[order]
-    low = np.searchsorted(keys, made, side="left")
-    high = np.searchsorted(keys, made, side="right")
+    low = np.searchsorted(keys, spokes[joins], side="left")
+    high = np.searchsorted(keys, spokes[joins], side="right")
     which, entry = expanded(low, high - low)
-    later, earlier = maker[which], makers[entry]
+    later, earlier = row[joins][which], makers[entry]
     differs = earlier < later
     later, earlier = later[differs], earlier[differs]
+    is_seen = (rings_of(a[later], mesh).ring == odd[earlier][:, None]).any(axis=1)
+    later, earlier = later[is_seen], earlier[is_seen]
     order = np.lexsort((earlier, later))
     for second, first in zip(later[order].tolist(), earlier[order].tolist(), strict=True):
         if is_taken[second] and is_taken[first]:
             is_taken[second] = False
-
-
-def _contains(sorted_keys, keys):
-    place = np.searchsorted(sorted_keys, keys)
-    return sorted_keys[np.minimum(place, len(sorted_keys) - 1)] == keys
 
 
 def _close_faces(faces, apex, mesh, face_lives):

@@ -50,7 +50,7 @@ def nearest_on_edge(x, y, px, py, qx, qy):
     if (px - x) * (qy - y) - (py - y) * (qx - x) <= 0.0:
         return x, y, 0.0
     along = ((x - px) * ex + (y - py) * ey) / (ex * ex + ey * ey)
-    along = min(max(along, 0.0), 1.0)
+    along = min(max(along, 0.0), 1.0) + 0.0  # no -0.0
     return px + along * ex, py + along * ey, along
 
 

@@ -61,6 +61,30 @@ def surface_errors(
     return errors
 
 
+def heights_at(mesh: TriangleMesh, plan: FloatArray) -> FloatArray:
+    """Return z of a surface at places.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface; linear on each face.
+    plan : ndarray, shape (n_points, 2)
+        x and y of the places.
+
+    Returns
+    -------
+    ndarray, shape (n_points,)
+        NaN where no face covers the place, and no vertex without faces is there.
+
+    Examples
+    --------
+    >>> mesh = TriangleMesh([[0, 0, 0], [4, 0, 4], [0, 4, 0]], [[0, 1, 2]])
+    >>> heights_at(mesh, np.array([[1.0, 1.0], [4.0, 4.0]])).tolist()
+    [1.0, nan]
+    """
+    return -surface_errors(mesh, np.column_stack([plan, np.zeros(len(plan))]))
+
+
 def _fill_at_lone_vertices(errors: FloatArray, mesh: TriangleMesh, points: FloatArray) -> None:
     """Give points over no face the error against the vertex without faces that is there."""
     is_lone = np.ones(mesh.n_vertices, dtype=bool)

@@ -129,7 +129,8 @@ class SurfaceLevel:
         centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
         # about a local origin also vertically, so that sums of squares keep their digits
         self._z_origin = heights.min(axis=0) + np.ptp(heights, axis=0) / 2
-        self._least_limit = (NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))) ** 2
+        least_error = NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))
+        self._least_limit = least_error * least_error  # inf where ** would overflow
         self._cost_limit = 0.0
         self._set_up(plan - centre, heights - self._z_origin, faces, locked, with_update,
                      outline_tolerance, HEIGHT_STEP * float(np.abs(heights).max()))  # fmt: skip
@@ -268,7 +269,7 @@ class SurfaceLevel:
         todo = np.flatnonzero(vertices.is_stale & vertices.lives & may_matter).astype(np.int32)
         limits = Limits(
             _NORM_CODES[norm],
-            float(tolerance) ** 2,
+            float(tolerance) * float(tolerance),
             float(cutoff),
             self._height_step,
         )

@@ -89,7 +89,7 @@ def tolerant_outline(
     plan = np.column_stack([x[obstacles], y[obstacles]])
     sort_into_cells(plan, low[0], low[1], size, n_columns, n_rows, indptr, order)
     return Outline(
-        squared_tolerance=float(tolerance) ** 2,
+        squared_tolerance=float(tolerance) * float(tolerance),  # inf where ** would overflow
         x=x,
         y=y,
         after=after,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from wavelet_gis.crs.frame import VERTICAL_UNITS, CoordinateSystem, Kind, vertical_unit_name
@@ -88,7 +89,13 @@ def _kind(horizontal: CRS) -> Kind:
 def _horizontal_unit(horizontal: CRS) -> float:
     if _kind(horizontal) == "unknown" or not horizontal.axis_info:
         return 1.0
-    return float(horizontal.axis_info[0].unit_conversion_factor)
+    units = [float(axis.unit_conversion_factor) for axis in horizontal.axis_info[:2]]
+    if not all(math.isfinite(unit) and unit > 0.0 for unit in units) or len(set(units)) > 1:
+        raise CrsError(
+            f"the CRS {_shortened(horizontal.name)!r} counts x and y in units of "
+            f"{' and '.join(f'{unit:g}' for unit in units)} metres or radians; name the right CRS."
+        )
+    return units[0]
 
 
 def _vertical_unit(crs: CRS) -> str | None:

@@ -49,7 +49,7 @@ class Layer:
     ----------
     name : str
         Of the layer.
-    geometry_type : {"Point Z", "Polygon Z"}
+    geometry_type : {"Point Z", "LineString Z", "Polygon Z"}
         Of all its features.
     geometry : (n,) array of bytes
         Well-known binary.
@@ -62,7 +62,7 @@ class Layer:
     """
 
     name: str
-    geometry_type: Literal["Point Z", "Polygon Z"]
+    geometry_type: Literal["Point Z", "LineString Z", "Polygon Z"]
     geometry: NDArray[Any]
     fields: dict[str, NDArray[Any]]
     style: str

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["detail_style", "tin_style", "vertex_style"]
+__all__ = ["contour_style", "detail_style", "tin_style", "vertex_style"]
 
 #: Elevation tints from low to high: green plains, ochre hills, brown and pale heights.
 _TERRAIN = [
@@ -39,6 +39,9 @@ _LEVELS = [
     (92, 200, 99),
     (170, 220, 50),
 ]
+
+#: Contours: their colour, and the width in millimetres of common ones and of those of the index.
+_CONTOUR, _CONTOUR_WIDTHS = "133,91,52,255", (0.15, 0.4)
 
 _HEADER = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
 
@@ -82,6 +85,38 @@ def tin_style(elevation: NDArray[np.float64]) -> str:
 def vertex_style() -> str:
     """QML of the vertices of a TIN: small dark points."""
     return _single_marker((60, 60, 60), 0.8, "0.1")
+
+
+def contour_style() -> str:
+    """QML of contours: brown, those with 1 in the field ``is_index`` thick."""
+    symbols, categories = [], []
+    for is_index, width in enumerate(_CONTOUR_WIDTHS):
+        options = _options(
+            {
+                "line_color": _CONTOUR,
+                "line_style": "solid",
+                "line_width": f"{width:g}",
+                "line_width_unit": "MM",
+                "joinstyle": "round",
+                "capstyle": "round",
+            }
+        )
+        symbols.append(
+            f'<symbol type="line" name="{is_index}" alpha="1" clip_to_extent="1" force_rhr="0">'
+            f'<layer class="SimpleLine" enabled="1" locked="0" pass="0">{options}</layer></symbol>'
+        )
+        label = "index contour" if is_index else "contour"
+        categories.append(
+            f'<category symbol="{is_index}" value="{is_index}" type="integer" label="{label}" '
+            'render="true"/>'
+        )
+    return (
+        _HEADER + '<qgis version="3.28.0" styleCategories="Symbology">\n'
+        '<renderer-v2 type="categorizedSymbol" attr="is_index" symbollevels="0" '
+        'enableorderby="0" forceraster="0">\n'
+        f"<categories>{''.join(categories)}</categories>\n<symbols>{''.join(symbols)}</symbols>\n"
+        "</renderer-v2>\n<blendMode>0</blendMode>\n</qgis>\n"
+    )
 
 
 def detail_style(level: int, n_levels: int, magnitude: NDArray[np.float64]) -> str:

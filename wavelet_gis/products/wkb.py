@@ -1,16 +1,18 @@
-"""Points and triangles as well-known binary, built by numpy for millions at once."""
+"""Points, triangles and lines as well-known binary, built by numpy for millions at once."""
 
 from __future__ import annotations
 
+import struct
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["points_wkb", "triangles_wkb"]
+__all__ = ["lines_wkb", "points_wkb", "triangles_wkb"]
 
 _LITTLE_ENDIAN = 1
-_POINT_Z, _POLYGON_Z = 1001, 1003
+_POINT_Z, _LINE_Z, _POLYGON_Z = 1001, 1002, 1003
 
 _POINT = np.dtype([("order", "u1"), ("type", "<u4"), ("xyz", "<f8", (3,))])
 _TRIANGLE = np.dtype(
@@ -39,6 +41,15 @@ def triangles_wkb(vertices: NDArray[np.float64], faces: NDArray[Any]) -> NDArray
     records["n_rings"], records["n_corners"] = 1, 4
     records["xyz"] = vertices[faces[:, [0, 1, 2, 0]]]
     return _as_bytes(records)
+
+
+def lines_wkb(lines: Sequence[NDArray[np.float64]]) -> NDArray[Any]:
+    """Return ``(n,)`` bytes objects, a LineString Z for each ``(m, 3)`` array of coordinates."""
+    objects = np.empty(len(lines), dtype=object)
+    for k, line in enumerate(lines):
+        head = struct.pack("<BII", _LITTLE_ENDIAN, _LINE_Z, len(line))
+        objects[k] = head + np.ascontiguousarray(line, dtype="<f8").tobytes()
+    return objects
 
 
 def _as_bytes(records: NDArray[Any]) -> NDArray[Any]:

@@ -15,18 +15,14 @@ from wavelet_core import OptionError, Progress, TriangleMesh, surface_shape
 from wavelet_core.metrics import surface_errors
 from wavelet_core.progress import report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.workflows.read_off.levels import telling_levels
+from wavelet_gis.workflows.solver.quality import triangle_quality
 
-__all__ = ["ReportData", "chosen_levels", "report_data", "triangle_quality"]
+__all__ = ["ReportData", "report_data"]
 FloatArray = NDArray[np.float64]
-
-#: Triangles with an angle below this are called slivers, in degrees.
-SLIVER_ANGLE = 10.0
 
 #: Classes of slope, in degrees, over which the error is broken down.
 SLOPE_CLASSES = (0.0, 5.0, 15.0, 30.0, 90.0)
-
-#: Shares of the input's vertices at which a level is shown as a picture.
-SHOWN_SHARES = (0.25, 0.05)
 
 #: Bins of the histograms, common to all levels.
 N_BINS = 40
@@ -68,7 +64,7 @@ def report_data(
     geo : GeoPyramid
         What is reported on.
     levels : sequence of int, optional
-        Which levels are shown as pictures; see `chosen_levels`.
+        Which levels are shown as pictures; see `telling_levels`.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -80,7 +76,7 @@ def report_data(
         ``progress`` returned False.
     """
     pyramid = geo.pyramid
-    chosen = chosen_levels(geo) if levels is None else list(dict.fromkeys(levels))
+    chosen = telling_levels(geo) if levels is None else list(dict.fromkeys(levels))
     for level in chosen:
         if not 0 <= level <= pyramid.n_levels:
             raise OptionError(f"there is no level {level}; they are 0 to {pyramid.n_levels}.")
@@ -105,52 +101,6 @@ def report_data(
         "versions": _versions(),
     }
     return ReportData(figures, shown, {level: errors[level] for level in chosen})
-
-
-def chosen_levels(geo: GeoPyramid) -> list[int]:
-    """Return the levels nearest to a quarter and a twentieth of the vertices, and the coarsest.
-
-    Parameters
-    ----------
-    geo : GeoPyramid
-        Whose levels.
-    """
-    pyramid = geo.pyramid
-    counts = np.array([pyramid.n_vertices(level) for level in range(pyramid.n_levels + 1)])
-    shares = np.log(counts / counts[-1])
-    nearest = [int(np.argmin(np.abs(shares - np.log(share)))) for share in SHOWN_SHARES]
-    wanted = [level for level in nearest if level < pyramid.n_levels]
-    return list(dict.fromkeys([*wanted, 0]))
-
-
-def triangle_quality(mesh: TriangleMesh) -> dict[str, float]:
-    """Return median and 5th percentile of the smallest angles in plan, and the share of slivers.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        At least one face, or all figures are NaN.
-
-    Examples
-    --------
-    >>> from wavelet_core import synthetic
-    >>> triangle_quality(synthetic.plane())["median_smallest_angle"]
-    45.0
-    """
-    if mesh.n_faces == 0:
-        return dict.fromkeys(
-            ("median_smallest_angle", "low_smallest_angle", "sliver_share"), float("nan")
-        )
-    corners = mesh.vertices[mesh.faces, :2]
-    sides = np.roll(corners, -1, axis=1) - corners
-    before = -np.roll(sides, 1, axis=1)
-    cross = sides[..., 0] * before[..., 1] - sides[..., 1] * before[..., 0]
-    angles = np.degrees(np.arctan2(np.abs(cross), (sides * before).sum(axis=2))).min(axis=1)
-    return {
-        "median_smallest_angle": round(float(np.median(angles)), 6),
-        "low_smallest_angle": round(float(np.quantile(angles, 0.05)), 6),
-        "sliver_share": float(np.mean(angles < SLIVER_ANGLE)),
-    }
 
 
 def _level_row(

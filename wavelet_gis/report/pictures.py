@@ -145,8 +145,8 @@ def line_chart(
     flat = [point for line in points for point in line]
     if not flat:
         return ""
-    across = _Axis([a for a, _ in flat], log_x, _LEFT, WIDTH - _RIGHT)
-    up = _Axis([b for _, b in flat], log_y, HEIGHT - _BOTTOM, _TOP, from_zero=not log_y)
+    across = Axis([a for a, _ in flat], log_x, _LEFT, WIDTH - _RIGHT)
+    up = Axis([b for _, b in flat], log_y, HEIGHT - _BOTTOM, _TOP, from_zero=not log_y)
     parts = [_frame(across, up, x_label, y_label)]
     for k, ((name, _), line) in enumerate(zip(lines, points, strict=True)):
         path = " ".join(f"{across.at(a):.1f},{up.at(b):.1f}" for a, b in line)
@@ -179,7 +179,7 @@ def histogram_chart(
         return ""
     strip = 26.0
     height = _TOP + strip * len(rows) + _BOTTOM
-    across = _Axis([edges[0], edges[-1]], True, _LEFT, WIDTH - _RIGHT)
+    across = Axis([edges[0], edges[-1]], True, _LEFT, WIDTH - _RIGHT)
     parts = []
     for tick, label in across.ticks():
         parts.append(
@@ -205,7 +205,7 @@ def histogram_chart(
     return _chart(title, "".join(parts), "", height)
 
 
-class _Axis:
+class Axis:
     """From values to positions, linear or logarithmic, and round ticks."""
 
     def __init__(
@@ -269,7 +269,7 @@ def _label(value: float) -> str:
     return f"{value:.3g}"
 
 
-def _frame(across: _Axis, up: _Axis, x_label: str, y_label: str) -> str:
+def _frame(across: Axis, up: Axis, x_label: str, y_label: str) -> str:
     bottom, parts = HEIGHT - _BOTTOM, []
     for position, label in across.ticks():
         parts.append(

@@ -8,9 +8,9 @@ from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
-from wavelet_core import Progress
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core.errors import OptionError
-from wavelet_core.features.shape import SHAPE_NAMES
+from wavelet_core.features.shape import SHAPE_NAMES, SurfaceShape, surface_shape
 from wavelet_core.features.spectrum import vertex_details
 from wavelet_core.lifting.spacings import level_spacings
 from wavelet_gis.errors import OutputFileError
@@ -22,7 +22,6 @@ from wavelet_gis.products.vertex_tables import (
     band_names,
     component_columns,
     energy_columns,
-    shape_columns,
     shape_layer,
     vertex_layer,
 )
@@ -105,7 +104,7 @@ class Details:
             name = "level at which a vertex went"
             return label_band(geo, mesh, vertex_details(geo.pyramid).level, name, cell_size)
         if self.what == "shape":
-            return value_bands(geo, mesh, shape_columns(mesh), SHAPE_NAMES, cell_size)
+            return _shape_bands(geo, mesh, cell_size)
         columns_of, word = _BY_LEVEL[self.what]
         columns = columns_of(geo, self.channel, progress)
         return value_bands(geo, mesh, columns, band_names(geo, word), cell_size)
@@ -154,6 +153,21 @@ class Details:
     def figures(self) -> dict[str, Any]:
         """Return how strong the details of each level are, as JSON-able values."""
         return {"what": self.what, "levels": [row._asdict() for row in self.levels()]}
+
+
+def _shape_bands(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None) -> Bands:
+    """Return the shape of a surface by cell.
+
+    Slopes in x and y, and second derivatives, are what is interpolated between vertices: half way
+    between an aspect of 350 and one of 10 degrees is north, not south.
+    """
+    at_vertices = surface_shape(mesh)
+    columns = np.column_stack([at_vertices.gradient, at_vertices.hessian])
+    parts = value_bands(geo, mesh, columns, ("p", "q", "r", "s", "t"), cell_size)
+    cells = parts.values.reshape(len(parts.names), -1).T.astype(np.float64)
+    shape = SurfaceShape(cells[:, :2], cells[:, 2:])
+    values = np.stack([shape.named(name).astype(np.float32) for name in SHAPE_NAMES])
+    return Bands(values.reshape(-1, *parts.geometry.shape), SHAPE_NAMES, parts.geometry)
 
 
 def details(

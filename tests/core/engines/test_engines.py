@@ -84,6 +84,24 @@ def test_where_two_fans_meet_at_a_target_both_engines_look_at_the_same_one():
     assert bytes_of(ours) == bytes_of(theirs)
 
 
+@pytest.mark.parametrize("size", [{}, {"target_vertices": 20}])
+@pytest.mark.parametrize("seed", [2, 8, 10, 16, 20, 22, 35, 38])
+def test_holes_that_an_outline_tolerance_fills_are_the_same_bytes(seed, size):
+    """Two vertices beside a hole made the same edge, which the engines judged differently."""
+    mesh = grid_with_holes(14 + seed % 5, 16, seed=seed, hole_share=0.3, scale=100.0)
+    ours, theirs = both(lambda: analyse(mesh, outline_tolerance=60.0, **size))
+    assert bytes_of(ours) == bytes_of(theirs)
+
+
+@pytest.mark.parametrize("size", [{"max_error": 1e200}, {"outline_tolerance": 1e200}])
+def test_a_tolerance_beyond_all_bounds_is_one_that_nothing_breaks(size):
+    """Its square is no double, which ended in an OverflowError."""
+    mesh = MESHES["hills"]()
+    ours, theirs = both(lambda: analyse(mesh, target_vertices=8, **size))
+    assert ours.mesh(0).n_vertices <= 8
+    assert bytes_of(ours) == bytes_of(theirs)
+
+
 @pytest.mark.parametrize("mesh_name", MESHES)
 def test_locked_vertices_are_the_same_bytes(mesh_name):
     mesh = MESHES[mesh_name]()

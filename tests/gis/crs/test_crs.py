@@ -182,3 +182,15 @@ def test_a_damaged_frame_is_refused(damage):
 def test_a_damaged_system_is_refused(damage):
     with pytest.raises(CrsError):
         CoordinateSystem.from_dict(CoordinateSystem().to_dict() | damage)
+
+
+@pytest.mark.parametrize("factors", [(0, 1), (1, 0), (-1, -1), (1, 0.3048)])
+def test_units_in_which_nothing_can_be_measured(factors):
+    """A unit of 0 metres, as one flipped byte makes it, ended in a division by zero."""
+    pyproj = pytest.importorskip("pyproj")
+    wkt = pyproj.CRS("EPSG:25832").to_wkt()
+    head, axes = wkt.split("CS[Cartesian,2]")
+    for factor in factors:
+        axes = axes.replace('LENGTHUNIT["metre",1]', f'LENGTHUNIT["x{factor}",{factor}]', 1)
+    with pytest.raises(CrsError, match="counts x and y in units of"):
+        coordinate_system(head + "CS[Cartesian,2]" + axes)

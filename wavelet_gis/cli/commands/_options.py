@@ -446,6 +446,14 @@ def box(text: str) -> tuple[float, float, float, float]:
     return x_min, y_min, x_max, y_max
 
 
+def level_numbers(text: str) -> tuple[int, ...]:
+    """Return a list of levels from the command line."""
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of levels such as 0,4") from None
+
+
 def names(text: str) -> tuple[str, ...]:
     """Return a list of names from the command line."""
     return tuple(name.strip() for name in text.split(",") if name.strip())

@@ -14,6 +14,11 @@ HELP = "Show what a pyramid file holds: source, CRS, parameters, size and errors
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("file", help="a pyramid file")
+    parser.add_argument(
+        "--triangles",
+        action="store_true",
+        help="measure the triangles of every level, too: angles, edges and areas in plan",
+    )
 
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
@@ -43,6 +48,14 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         ("level", "vertices", "triangles", "rmse_coefficients", "rmse_surface", "max_error"),
         [tuple(level[key] for key in keys) for level in summary["levels"]],
     )
+    if arguments.triangles:
+        from wavelet_gis.workflows.open import load
+        from wavelet_gis.workflows.read_off.quality import LevelQuality, mesh_quality
+
+        with console.progress("triangles") as progress:
+            rows = mesh_quality(load(arguments.file), progress=progress)
+        console.table([name.replace("_", " ") for name in LevelQuality._fields], rows)
+        summary["triangles"] = [row._asdict() for row in rows]
     console.figures(summary)
 
 

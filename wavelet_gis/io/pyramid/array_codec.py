@@ -161,7 +161,7 @@ class ArrayHeader:
             and 1 <= chunk_rows <= _MOST_NUMBERS
         )
         if not is_sound:
-            claim = " ".join(str(value)[:40] for value in (dtype, shape, filter_name, chunk_rows))
+            claim = " ".join(repr(value)[:40] for value in (dtype, shape, filter_name, chunk_rows))
             raise PyramidError(
                 f"an array is declared as {claim}, which no pyramid file holds; "
                 "the file is damaged."

@@ -8,7 +8,10 @@ import numpy as np
 
 from wavelet_core import TriangleMesh
 
-__all__ = ["MeshQuality", "quality_of"]
+__all__ = ["MeshQuality", "quality_of", "triangle_quality"]
+
+#: Triangles with an angle below this are called slivers, in degrees.
+SLIVER_ANGLE = 10.0
 
 
 class MeshQuality(NamedTuple):
@@ -58,3 +61,33 @@ def quality_of(mesh: TriangleMesh, unit: float = 1.0) -> MeshQuality:
         float(areas.min()),
         float(areas.max()),
     )
+
+
+def triangle_quality(mesh: TriangleMesh) -> dict[str, float]:
+    """Return median and 5th percentile of the smallest angles in plan, and the share of slivers.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        At least one face, or all figures are NaN.
+
+    Examples
+    --------
+    >>> from wavelet_core import synthetic
+    >>> triangle_quality(synthetic.plane())["median_smallest_angle"]
+    45.0
+    """
+    if mesh.n_faces == 0:
+        return dict.fromkeys(
+            ("median_smallest_angle", "low_smallest_angle", "sliver_share"), float("nan")
+        )
+    corners = mesh.vertices[mesh.faces, :2]
+    sides = np.roll(corners, -1, axis=1) - corners
+    before = -np.roll(sides, 1, axis=1)
+    cross = sides[..., 0] * before[..., 1] - sides[..., 1] * before[..., 0]
+    angles = np.degrees(np.arctan2(np.abs(cross), (sides * before).sum(axis=2))).min(axis=1)
+    return {
+        "median_smallest_angle": round(float(np.median(angles)), 6),
+        "low_smallest_angle": round(float(np.quantile(angles, 0.05)), 6),
+        "sliver_share": float(np.mean(angles < SLIVER_ANGLE)),
+    }

@@ -75,13 +75,15 @@ def test_what_is_no_number_is_refused():
         ("<f8", [1 << 50], "shuffle", 1),
         ("<f8", [1 << 30], "shuffle", 1 << 30),  # one chunk of 8 GiB
         ("<f8", [3], "pickle", 1),
+        ("<f8", [3], "shuffle\n", 1),
         ("<f8", [3], "shuffle", 0),
         ("<f8", [3], "shuffle", None),
     ],
 )
 def test_claims_that_no_file_of_ours_makes(claim):
-    with pytest.raises(PyramidError, match="damaged"):
+    with pytest.raises(PyramidError, match="damaged") as caught:
         ArrayHeader.checked(*claim)
+    assert "\n" not in str(caught.value)
 
 
 def header(n_rows, chunk_rows=4, dtype="<f8"):

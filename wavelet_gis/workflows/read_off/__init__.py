@@ -1,0 +1,1 @@
+"""What is read off a pyramid: profiles, contours, differences, shapes of triangles."""

@@ -1,0 +1,118 @@
+"""The surface of a level less that of another level, or less a DEM."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from wavelet_core.errors import OptionError
+from wavelet_gis.errors import InputFileError
+from wavelet_gis.model.dem import Dem
+from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.products.rasterise import rasterise
+from wavelet_gis.products.vertex_raster import grid_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+from wavelet_gis.workflows.read_off.levels import checked_levels
+
+__all__ = ["Difference", "difference"]
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A raster of differences in height.
+
+    Attributes
+    ----------
+    geo : GeoPyramid
+        Gives the CRS and the unit of z.
+    dem : Dem
+        32-bit floats; NaN where one of the two has nothing.
+    """
+
+    geo: GeoPyramid
+    dem: Dem
+
+    def write(self, path: str | os.PathLike[str]) -> dict[str, Any]:
+        """Write a raster; see `wavelet_gis.workflows.save.save`."""
+        from wavelet_gis.io.raster import write_dem
+
+        write_dem(path, self.dem, self.geo.system.wkt)
+        return {}
+
+    def figures(self) -> dict[str, Any]:
+        """Return the figures of all cells, in the input's unit of z."""
+        values = self.dem.values[self.dem.valid].astype(np.float64)
+        return {
+            "n_cells": len(values),
+            "mean": float(values.mean()),
+            "rms": float(np.sqrt((values**2).mean())),
+            "lowest": float(values.min()),
+            "highest": float(values.max()),
+        }
+
+
+def difference(
+    data: HoldsPyramid | GeoPyramid,
+    *,
+    level: int = 0,
+    less: int | str | os.PathLike[str] | Dem | None = None,
+    cell_size: float | None = None,
+) -> Difference:
+    """Return the surface of a level less another one: above 0 where the level is the higher.
+
+    Parameters
+    ----------
+    data : Analysis, Filtered or GeoPyramid
+        The pyramid.
+    level : int
+        0, the default, is the coarsest.
+    less : int, path or Dem, optional
+        Another level, or a DEM in the CRS and unit of the input; by default the input itself.
+    cell_size : float, optional
+        Of a grid, in the input's unit of x and y; by default that of the input, and for points
+        their mean spacing. A DEM has its own.
+
+    Raises
+    ------
+    OptionError
+        A level that is not there, or a cell size beside a DEM.
+    InputFileError
+        A DEM that cannot be read, has another CRS, or lies beside the terrain.
+    """
+    geo = pyramid_of(data)
+    checked_levels(geo, [level])
+    mesh = geo.pyramid.mesh(level)
+    if less is None or isinstance(less, int):
+        other = checked_levels(geo, [geo.pyramid.n_levels if less is None else less])[0]
+        finest = geo.pyramid.mesh(other)
+        geometry = grid_of(geo, finest if other > level else mesh, cell_size)
+        there = rasterise(geo.file_mesh(finest), geometry)
+    else:
+        if cell_size is not None:
+            raise OptionError("{0} is not for a DEM, which has its own; leave it out.", "cell_size")
+        dem = less if isinstance(less, Dem) else _read(geo, less)
+        geometry = dem.geometry
+        there = np.full(geometry.shape, np.nan)
+        there[dem.valid] = dem.elevations()
+    values = (rasterise(geo.file_mesh(mesh), geometry) - there).astype(np.float32)
+    valid = np.isfinite(values)
+    if not valid.any():
+        raise InputFileError(
+            "{name}: no cell has a height of both; check that they overlap.", name=geo.source_name
+        )
+    profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
+    return Difference(geo, Dem(values, valid, geometry, float("nan"), profile=profile))
+
+
+def _read(geo: GeoPyramid, path: str | os.PathLike[str]) -> Dem:
+    from wavelet_gis.crs.agreement import agreed
+    from wavelet_gis.crs.frame import Georeference
+    from wavelet_gis.io.raster import read_dem
+
+    dem, place = read_dem(path)
+    own = Georeference(wkt=geo.system.wkt, vertical_unit=place.vertical_unit)
+    agreed([geo.source_name, os.fspath(path)], [own, place])
+    return dem
