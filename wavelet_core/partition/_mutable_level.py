@@ -54,7 +54,7 @@ NEGLIGIBLE_ERROR = 1e-9
 #: the spacing of doubles there, for the few operations between a height and its error.
 HEIGHT_STEP = 2.0**-46
 #: Arrays are packed when no more than this share of them is in use: packing after each tenth of the
-#: vertices is slower, and waiting until half have gone is no faster (docs/surface.md).
+#: vertices is slower, and waiting until half have gone is no faster (docs/topics/surface.md).
 PACKED_SHARE = 0.7
 #: What the kernels call the norms of :data:`wavelet_core.partition.registry.NORMS`.
 _NORM_CODES = {"rms": LEAST_SQUARES, "max": LARGEST}

@@ -11,7 +11,7 @@ import pytest
 from qgis_fixtures import COMMAND
 from qgis_layers import assert_same_raster, hills, survey, write_las, write_raster
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 #: Packages that a QGIS as it comes does not have.
 HIDDEN = ("numba", "pythoncdt", "laspy", "lazrs", "sklearn", "trimesh", "ezdxf", "shapely")
 TOP = "terrain_wavelets/"

@@ -19,7 +19,7 @@ from qgis_layers import (
     write_raster,
 )
 
-ROOT = Path(__file__).resolve().parent.parent.parent
+ROOT = Path(__file__).resolve().parents[3]
 
 #: Put on the path of another process, this makes modules absent there.
 HIDE = "import sys\nfor name in {names!r}:\n    sys.modules[name] = None\n"
