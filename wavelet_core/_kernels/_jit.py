@@ -173,10 +173,11 @@ def njit(function: Callable[..., Any]) -> Any:
     except RuntimeError:  # no writable place for the cache
         return _numba.njit(nogil=True)(function)
     # Numba takes cached code for good while the file of the function itself is unchanged, though
-    # kernels of other files are compiled into it: a change in any of them must void it.
+    # kernels of other files are compiled into it: a change in any of them must void it. The version
+    # is compared before the rest of an index is unpickled, which fails on classes that have gone.
     with contextlib.suppress(AttributeError):
         index = compiled._cache._cache_file
-        index._source_stamp = (index._source_stamp, _stamp_of_all_kernels())
+        index._version = (index._version, _stamp_of_all_kernels())
     return compiled
 
 

@@ -44,14 +44,18 @@ __all__ = ["LAYER", "Tileset", "ZoomFigures", "globe_points", "terrain_tiles"]
 LAYER = "layer.json"
 
 #: Shares of a zoom's error that vertices may be off, tried one after the other until all points of
-#: the input keep it; between tries the points that do not are made vertices that stay.
+#: the input keep it; between tries the points that do not are made vertices that stay. On crops of
+#: Jacksboro and TM1, 0.4 instead of 0.8 takes 38 to 43 % more bytes and 0.9 takes 4 to 6 % fewer;
+#: 0.8 once takes 32 to 67 % more, and ten times what five times do.
 _SHARES = (0.8, 0.8, 0.8, 0.8, 0.8, 0.6, 0.4, 0.2, 0.0)
 
-#: Of the finest zoom's error, what the chains along edges may be off.
+#: Of the finest zoom's error, what the chains along edges may be off. Half of it takes 2 % more
+#: bytes on the same crops, twice as much 1 to 2 % fewer.
 _SHARE_OF_CHAINS = 0.4
 
 #: Of a zoom's error, what the finer mesh may be off that is handed on to the next coarser zoom. A
-#: TIN of a TIN is off by more between vertices than at them, so those need room.
+#: TIN of a TIN is off by more between vertices than at them, so those need room. From half of it to
+#: twice as much nothing changes on the same crops (0.2 %); with four times as much 26 % more bytes.
 _SHARE_HANDED_ON = 1 / 16
 
 
