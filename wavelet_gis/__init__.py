@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 
     from wavelet_gis.report.page import report_page
     from wavelet_gis.report.profile_plot import profile_page
+    from wavelet_gis.tiles.cloud.restore import restore_source
     from wavelet_gis.tiles.globe.tileset import Tileset, terrain_tiles
     from wavelet_gis.tiles.read import Region, extract_region, restored_raster
-    from wavelet_gis.tiles.tile import Tiled, tile_rasters
+    from wavelet_gis.tiles.tile import Tiled, tile_clouds, tile_rasters
     from wavelet_gis.workflows.analyse import Analysis, analyse
     from wavelet_gis.workflows.details import Details, details
     from wavelet_gis.workflows.extract import Surface, extract
@@ -71,10 +72,12 @@ __all__ = [
     "profile_page",
     "reconstruct",
     "report_page",
+    "restore_source",
     "restored_raster",
     "save",
     "simplify",
     "terrain_tiles",
+    "tile_clouds",
     "tile_rasters",
 ]
 
@@ -114,8 +117,10 @@ _HOMES = {
     "save": "workflows.save:save",
     "simplify": "workflows.simplify:simplify",
     "extract_region": "tiles.read:extract_region",
+    "restore_source": "tiles.cloud.restore:restore_source",
     "restored_raster": "tiles.read:restored_raster",
     "terrain_tiles": "tiles.globe.tileset:terrain_tiles",
+    "tile_clouds": "tiles.tile:tile_clouds",
     "tile_rasters": "tiles.tile:tile_rasters",
 }
 

@@ -30,8 +30,8 @@ LEAST_GAIN = 0.005
 #: A vertex may move by so many mean distances of input points in one round. Half of it and twice as
 #: much change the RMSE at 2 % by 2 % at most on two DEMs, and vertices within a tolerance by 1 %.
 REACH = 3.0
-#: Share of the vertices that are replaced in one round, at most. Half of it and twice as much change
-#: the RMSE by 0.4 % at most on two DEMs.
+#: Share of the vertices that are replaced in one round, at most. Half of it and twice as much
+#: change the RMSE by 0.4 % at most on two DEMs.
 REPLACED_SHARE = 0.1
 #: A vertex is replaced while that costs less than this many times what its new place gains. Both
 #: are reckoned with all others as they are, which takes the cost for too high and the gain for too

@@ -29,6 +29,7 @@ from wavelet_gis.notes import Note, collected, note, warn
 __all__ = [
     "Terrain",
     "frame_of_bounds",
+    "require_plan",
     "terrain_of_cloud",
     "terrain_of_dem",
     "terrain_of_mesh",
@@ -195,7 +196,7 @@ def terrain_of_cloud(
             name=name,
             points=f"{n_points} point{'s' * (n_points != 1)}",
         )
-    _require_plan(name, cloud, system)
+    require_plan(name, cloud, system)
     try:
         with collected() as notes:
             frame, unit = frame_of_bounds(name, system, cloud_bounds(cloud), vertical_unit, fault)
@@ -232,8 +233,18 @@ def terrain_of_mesh(
     return Terrain(name, mesh, mesh, MeshOrigin(), system, frame, vertical_unit)
 
 
-def _require_plan(name: str, cloud: PointCloud, system: CoordinateSystem) -> None:
-    """Refuse coordinates from the centre of the earth, where z is no height."""
+def require_plan(name: str, cloud: PointCloud, system: CoordinateSystem) -> None:
+    """Refuse coordinates from the centre of the earth, where z is no height.
+
+    Parameters
+    ----------
+    name : str
+        For messages.
+    cloud : PointCloud
+        Some points.
+    system : CoordinateSystem
+        Their CRS.
+    """
     wkt = (system.wkt or "").replace(" ", "")
     if "GEOCCS[" not in wkt and "CS[Cartesian,3" not in wkt:
         return

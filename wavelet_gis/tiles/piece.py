@@ -1,10 +1,10 @@
 """The work on one piece, by itself in whatever process: a tile, or a group of four.
 
-A tile is an ordinary pyramid of its cells, with the cells on the lines that it shares with its
-neighbours locked, so that both keep them at every level. A group begins with the coarsest levels of
-its parts, put together vertex by vertex; the lines between them are free now, those around the
-group are locked. The integrals of the scaling functions go on from the parts, so that their sum
-with the coefficients is that of the input at every level of the whole.
+A tile is an ordinary pyramid of its cells, or of its points, with the vertices on the border that
+it shares with its neighbours locked, so that both keep them at every level. A group begins with
+the coarsest levels of its parts, put together vertex by vertex; the lines between them are free
+now, those around the group are locked. The integrals of the scaling functions go on from the
+parts, so that their sum with the coefficients is that of the input at every level of the whole.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from wavelet_core import PyramidError, TriangleMesh, WaveletError
 from wavelet_core import analyse as core_analyse
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.atomic import new_file
-from wavelet_gis.io.read_back import write_text
+from wavelet_gis.io.read_back import write_bytes, write_text
 from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
@@ -36,10 +36,22 @@ from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
 from wavelet_gis.workflows.analyse import analyse
 from wavelet_gis.workflows.save import write_pyramid_file
 
-__all__ = ["PIECES", "Joined", "cells_of", "join", "make_piece", "read_record", "sha256_of"]
+__all__ = [
+    "LOOSE",
+    "PIECES",
+    "Joined",
+    "cells_of",
+    "join",
+    "make_piece",
+    "read_record",
+    "sha256_of",
+]
 
 #: Folder of the files of the pieces.
 PIECES = "pieces"
+
+#: Suffix of the file of a tile whose points have no surface.
+LOOSE = ".points"
 
 #: What GeoPackages are dated by, where it is set.
 _EPOCH = "SOURCE_DATE_EPOCH"
@@ -54,12 +66,21 @@ class Joined(NamedTuple):
     faces : (m, 3) int64
     cells : (n,) int64, of the vertices in the grid of all, row by row; ascending
     integrals : (n,) float64
+    attributes : (n, k) float64
+    names : tuple of str, of the attributes
     """
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int64]
     cells: NDArray[np.int64]
     integrals: NDArray[np.float64]
+    attributes: NDArray[np.float64]
+    names: tuple[str, ...]
+
+    @property
+    def mesh(self) -> TriangleMesh:
+        """The mesh."""
+        return TriangleMesh(self.vertices, self.faces, self.attributes, self.names)
 
 
 def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, Any]:
@@ -92,8 +113,15 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
     place.parent.mkdir(parents=True, exist_ok=True)
     try:
         with collected(), _dated(plan):
-            geo = _tile(plan, piece) if piece.stage == 0 else _group(folder, plan, piece, inputs)
-            if geo is None:
+            made = _made(folder, plan, piece, inputs)
+            geo = made.geo
+            if geo is None and made.points is not None:
+                rest = place.with_suffix(LOOSE)
+                with new_file(rest, overwrite=True) as scratch:
+                    write_bytes(scratch, made.points)
+                record |= {"status": "loose", "sha256": sha256_of(rest)}
+                record["n_bytes"] = rest.stat().st_size
+            elif geo is None:
                 record |= {"status": "empty"}
             else:
                 with new_file(place, overwrite=True) as scratch:
@@ -183,8 +211,8 @@ def join(
     cells = [cells_of(plan, mesh) for mesh in meshes]
     unique, first, place = np.unique(np.concatenate(cells), return_index=True, return_inverse=True)
     place = place.ravel()
-    heights = np.concatenate([mesh.vertices[:, 2] for mesh in meshes])
-    if (heights[first][place] != heights).any():
+    signal = np.concatenate([np.hstack([m.vertices[:, 2:], m.attributes]) for m in meshes])
+    if (signal[first][place] != signal).any():
         raise PyramidError("two pieces have other heights at the same cell; tile anew.")
     starts = np.cumsum([0, *(mesh.n_vertices for mesh in meshes)])
     faces = np.concatenate(
@@ -195,8 +223,29 @@ def join(
     rows, columns = np.divmod(unique, plan.shape[1])
     x, y = plan.geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
     frame = plan.local_frame
-    vertices = np.column_stack([frame.local_x(x), frame.local_y(y), heights[first]])
-    return Joined(vertices, faces, unique, counted)
+    vertices = np.column_stack([frame.local_x(x), frame.local_y(y), signal[first, 0]])
+    return Joined(vertices, faces, unique, counted, signal[first, 1:], meshes[0].attribute_names)
+
+
+class _Made(NamedTuple):
+    """The pyramid of a piece, or None; then, of a tile, the points in it, where it has some."""
+
+    geo: GeoPyramid | None
+    points: bytes | None = None
+
+
+def _made(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) -> _Made:
+    if piece.stage > 0:
+        return _Made(_group(folder, plan, piece, inputs))
+    if plan.points is None:
+        return _Made(_tile(plan, piece))
+    from wavelet_gis.tiles.cloud.tile import cloud_tile, tile_pyramid
+
+    tile = cloud_tile(folder, plan, piece)
+    if tile is None:
+        return _Made(None)
+    geo = tile_pyramid(plan, piece, tile)
+    return _Made(geo, None if geo is not None else tile.points.to_bytes())
 
 
 def _tile(plan: TilePlan, piece: Piece) -> GeoPyramid | None:
@@ -240,8 +289,10 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
     whole = join(plan, meshes, integrals)
     rows, columns = np.divmod(whole.cells, plan.shape[1])
     locked = plan.is_shared(piece, rows, columns)
+    if plan.points is not None:  # they are on no line, but on the outline near one
+        locked &= ~_is_inside(whole.faces, len(whole.cells))
     pyramid = core_analyse(
-        TriangleMesh(whole.vertices, whole.faces),
+        whole.mesh,
         levels=None if piece.stage == plan.n_stages - 1 else plan.levels,
         locked=locked,
         integrals=whole.integrals,
@@ -256,6 +307,19 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
         source_name=piece.name,
     )
     return geo.with_errors()
+
+
+def _is_inside(faces: NDArray[np.int64], n_vertices: int) -> NDArray[np.bool_]:
+    """Return which vertices have faces all around them."""
+    tails, heads = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    directed = np.sort(tails * n_vertices + heads)
+    reverse = heads * n_vertices + tails
+    at = np.minimum(np.searchsorted(directed, reverse), len(directed) - 1)
+    on_outline = directed[at] != reverse
+    inside = np.bincount(tails, minlength=n_vertices) > 0
+    inside[tails[on_outline]] = False
+    inside[heads[on_outline]] = False
+    return inside
 
 
 def tile_dem(plan: TilePlan, piece: Piece) -> Dem | None:

@@ -1,4 +1,4 @@
-"""How a raster is cut into tiles, and what holds for all of them: a plan that is kept as JSON."""
+"""How terrain is cut into tiles, and what holds for all of them: a plan that is kept as JSON."""
 
 from __future__ import annotations
 
@@ -21,7 +21,18 @@ from wavelet_gis.io.names import files_of, gdal_path, joint_name
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.terrain import frame_of_bounds
 
-__all__ = ["LEVELS", "PLAN", "TILE", "Piece", "SourceFile", "TilePlan", "plan_of_rasters"]
+__all__ = [
+    "LEVELS",
+    "PLAN",
+    "TILE",
+    "Piece",
+    "PointLattice",
+    "SourceFile",
+    "TilePlan",
+    "checked_wavelets",
+    "ends_of_tiles",
+    "plan_of_rasters",
+]
 
 #: The file of a tile set that holds its plan.
 PLAN = "plan.json"
@@ -55,8 +66,34 @@ class Piece(NamedTuple):
         return f"{self.stage}/{self.row:05d}_{self.column:05d}"
 
 
+class PointLattice(NamedTuple):
+    """What a plan of points has besides: its cells are the steps in which coordinates are stored.
+
+    scales, offsets : tuple of float, of x, y and z
+    first : (row, column), stored Y and X of the first cell
+    ratio : (p, q), a column is p and a row q of a length that is about the same in both
+    spacing : int, of the points in that length
+    reach : int, as far as a border may be from its line
+    n_points : int
+    """
+
+    scales: tuple[float, float, float]
+    offsets: tuple[float, float, float]
+    first: tuple[int, int]
+    ratio: tuple[int, int]
+    spacing: int
+    reach: int
+    n_points: int
+
+    @property
+    def reach_in_cells(self) -> tuple[int, int]:
+        """Rows and columns of the reach."""
+        p, q = self.ratio
+        return -(-self.reach // q), -(-self.reach // p)
+
+
 class SourceFile(NamedTuple):
-    """A raster and where it lies in the grid of all.
+    """A file and where it lies in the grid of all.
 
     path : str
     row, column : int, of its first cell
@@ -90,12 +127,14 @@ class TilePlan:
     levels : int
         Of each piece but the last.
     reading : dict
-        ``band``, ``nodata``, ``offline``.
+        ``band``, ``nodata``, ``offline``; of points ``attributes``, ``classes`` and others.
     wavelets : dict
         Options of the analysis.
     system, frame : dict
         See `wavelet_gis.crs.frame`.
     vertical_unit : str
+    points : PointLattice or None
+        Of point clouds; None for rasters.
     """
 
     files: tuple[SourceFile, ...]
@@ -109,6 +148,7 @@ class TilePlan:
     system: dict[str, Any]
     frame: dict[str, Any]
     vertical_unit: str
+    points: PointLattice | None = None
 
     @property
     def geometry(self) -> GridGeometry:
@@ -157,22 +197,26 @@ class TilePlan:
         return top, left, bottom, right
 
     def is_shared(self, piece: Piece, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-        """Return which cells of a piece lie on a border line with a neighbour."""
+        """Return which cells lie on a border line with a neighbour, or, of points, within reach."""
         top, left, bottom, right = self.cells(piece)
+        reach = (0, 0) if self.points is None else self.points.reach_in_cells
         shared: np.ndarray = np.zeros(len(rows), dtype=bool)
-        for at, ends, last in (
-            (rows, (top, bottom), self.rows[-1]),
-            (columns, (left, right), self.columns[-1]),
+        for at, ends, last, within in (
+            (rows, (top, bottom), self.rows[-1], reach[0]),
+            (columns, (left, right), self.columns[-1], reach[1]),
         ):
             for end in ends:
                 if end not in (0, last):
-                    shared |= at == end
+                    shared |= np.abs(at - end) <= within
         return shared
 
     def to_json(self) -> str:
         """Return the plan as a text, the same for the same plan."""
         fields = {"format": _FORMAT, **asdict(self)}
         fields["files"] = [list(file) for file in self.files]
+        fields["points"] = None if self.points is None else self.points._asdict()
+        if self.points is None:  # as plans of rasters were before there were others
+            fields.pop("points")
         return json.dumps(fields, sort_keys=True, indent=1)
 
     @property
@@ -209,6 +253,7 @@ class TilePlan:
                 system=dict(stored.fields("system")),
                 frame=dict(stored.fields("frame")),
                 vertical_unit=stored.text("vertical_unit"),
+                points=None if "points" not in raw else _lattice(stored.fields("points")),
             )
         except (ValueError, KeyError, TypeError) as error:
             raise InputFileError(
@@ -265,15 +310,12 @@ def plan_of_rasters(
             tile=tile,
             levels=levels,
         )
-    for name in wavelets or {}:
-        if name not in _WAVELETS:
-            raise OptionError(f"{name} is no option of tiles; these are: {', '.join(_WAVELETS)}.")
+    wavelets = checked_wavelets(wavelets)
     paths = [os.path.abspath(path) for path in files_of(data)]
     for path in paths:
         if suffix_of(path) in CLOUD_SUFFIXES:
             raise InputFileError(
-                f"{path}: this is a point cloud, and tiles are made of rasters only; analyse it, "
-                "or make a raster of it first (pdal's writers.gdal)."
+                f"{path}: this is a point cloud, the others are rasters; name files of one kind."
             )
     reading = {"band": band, "nodata": nodata, "offline": offline}
     heads = [read_dem(path, window=CellWindow(0, 0, 1, 1), **reading) for path in paths]  # type: ignore[arg-type]
@@ -317,18 +359,38 @@ def plan_of_rasters(
         files=tuple(files),
         shape=shape,
         transform=geometry.transform,
-        rows=_ends(shape[0], tile),
-        columns=_ends(shape[1], tile),
+        rows=ends_of_tiles(shape[0], tile),
+        columns=ends_of_tiles(shape[1], tile),
         levels=levels,
         reading=reading,
-        wavelets={key: value for key, value in (wavelets or {}).items() if value is not None},
+        wavelets=wavelets,
         system=system.to_dict(),
         frame=frame.to_dict(),
         vertical_unit=unit,
     )
 
 
-def _ends(n_cells: int, tile: int) -> tuple[int, ...]:
+def checked_wavelets(wavelets: dict[str, Any] | None) -> dict[str, Any]:
+    """Return the options of the analysis that are given; refuse those that tiles do not have."""
+    for name in wavelets or {}:
+        if name not in _WAVELETS:
+            raise OptionError(f"{name} is no option of tiles; these are: {', '.join(_WAVELETS)}.")
+    return {key: value for key, value in (wavelets or {}).items() if value is not None}
+
+
+def ends_of_tiles(n_cells: int, tile: float) -> tuple[int, ...]:
     """Return the cells where tiles of about equal size begin and end."""
     n_tiles = max(round((n_cells - 1) / tile), 1)
     return tuple(round(k * (n_cells - 1) / n_tiles) for k in range(n_tiles + 1))
+
+
+def _lattice(stored: Fields) -> PointLattice:
+    return PointLattice(
+        scales=tuple(stored.numbers("scales", 3)),  # type: ignore[arg-type]
+        offsets=tuple(stored.numbers("offsets", 3)),  # type: ignore[arg-type]
+        first=tuple(stored.integers("first", -(2**32))),  # type: ignore[arg-type]
+        ratio=tuple(stored.integers("ratio", 1)),  # type: ignore[arg-type]
+        spacing=stored.integer("spacing", 1),
+        reach=stored.integer("reach", 1),
+        n_points=stored.integer("n_points", 1),
+    )

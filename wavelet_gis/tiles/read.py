@@ -82,18 +82,20 @@ def extract_region(
         )
     whole = join(found.plan, meshes, [np.ones(mesh.n_vertices) for mesh in meshes])
     vertices, faces, cells = whole.vertices, whole.faces, whole.cells
+    attributes = whole.attributes
     if bbox is not None:
         places = found.plan.local_frame.to_file(vertices)[:, :2][faces]
         reaches = (places.min(axis=1) <= bbox[2:]) & (places.max(axis=1) >= bbox[:2])
         used, faces = np.unique(faces[reaches.all(axis=1)], return_inverse=True)
         vertices, faces, cells = vertices[used], faces.reshape(-1, 3), cells[used]
+        attributes = attributes[used]
         if not len(faces):
             raise InputFileError(
                 "{path}: there are no triangles in the region; give another {0}.",
                 "bbox",
                 path=found.folder,
             )
-    mesh = TriangleMesh(vertices, faces)
+    mesh = TriangleMesh(vertices, faces, attributes, whole.names)
     geo = replace(geos[0], origin=MeshOrigin(), errors=None, notes=())
     return Region(Surface(geo, mesh, cells, level), tuple(pieces))
 
@@ -118,6 +120,10 @@ def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:
 
     found = index if isinstance(index, TileIndex) else open_index(index)
     plan = found.plan
+    if plan.points is not None:
+        raise InputFileError(
+            f"{found.folder}: these are tiles of point clouds, not of a raster; use restore_source."
+        )
     values = valid = first = None
     for piece in plan.pieces(0):
         status = found.records.get(piece, {}).get("status", "missing")
@@ -163,10 +169,18 @@ def _loaded(index: TileIndex, piece: Piece, below: int) -> GeoPyramid:
 
 
 def _reaches(plan: TilePlan, piece: Piece, bbox: Box | None) -> bool:
-    """Return whether the cells of a piece reach into a box."""
+    """Return whether the cells of a piece, or its border, reach into a box."""
     if bbox is None:
         return True
     top, left, bottom, right = plan.cells(piece)
+    if plan.points is not None:
+        in_rows, in_columns = plan.points.reach_in_cells
+        top, left, bottom, right = (
+            top - in_rows,
+            left - in_columns,
+            bottom + in_rows,
+            right + in_columns,
+        )
     x, y = plan.geometry.centres(
         np.array([left, right, right, left], dtype=np.float64),
         np.array([top, top, bottom, bottom], dtype=np.float64),

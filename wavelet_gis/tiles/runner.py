@@ -1,4 +1,4 @@
-"""Where the pieces are made: in this process, in others beside it, or on a Dask scheduler.
+"""Where pieces and cuts are made: in this process, in others beside it, or on a Dask scheduler.
 
 Few fat tasks, in waves, for each stage its own; what passes from one to the next are files, not
 results in memory. A task that is lost, with its worker or its scheduler, is done again from its
@@ -8,7 +8,7 @@ inputs, and so is one that was half done: its files are written aside.
 from __future__ import annotations
 
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from importlib.util import find_spec
@@ -17,13 +17,12 @@ from typing import Any
 
 from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.errors import OutputFileError
-from wavelet_gis.tiles.piece import make_piece
-from wavelet_gis.tiles.plan import Piece
 
 __all__ = ["Job", "records_of", "require_dask"]
 
-#: Arguments of `wavelet_gis.tiles.piece.make_piece`.
-Job = tuple[str, Piece, dict[str, str]]
+#: `wavelet_gis.tiles.piece.make_piece`, or another function that returns a record and can be asked
+#: again, and its arguments.
+Job = tuple[Callable[..., dict[str, Any]], tuple[Any, ...]]
 
 #: Tasks that a scheduler is given at once; some 50,000 alive are known to stall one.
 _WAVE = 10_000
@@ -57,7 +56,8 @@ def records_of(
             yield from _on_dask(jobs[start : start + _WAVE], scheduler)
     elif workers == 1 or len(jobs) == 1:
         for job in jobs:
-            yield make_piece(*job)
+            function, arguments = job
+            yield function(*arguments)
     else:
         yield from _in_processes(jobs, workers)
 
@@ -81,7 +81,7 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
             min(workers, len(left)), mp_context=get_context("spawn"), initializer=_leave_interrupts
         )
         try:
-            futures = {pool.submit(make_piece, *job): job for job in left}
+            futures = {pool.submit(job[0], *job[1]): job for job in left}
             for future in as_completed(futures):
                 record = future.result()
                 left.remove(futures[future])
@@ -114,9 +114,7 @@ def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:
             "'dask scheduler', and workers with 'dask worker'."
         ) from error
     with client, client.as_current():
-        futures = [
-            client.submit(make_piece, *job, pure=False, retries=_MOST_LOSSES) for job in jobs
-        ]
+        futures = [client.submit(job[0], *job[1], pure=False, retries=_MOST_LOSSES) for job in jobs]
         for future in done(futures):
             yield future.result()
             future.release()

@@ -1,4 +1,4 @@
-"""A raster of any size as a tiled pyramid: stage by stage, from where an earlier run ended."""
+"""Terrain of any size as a tiled pyramid: stage by stage, from where an earlier run ended."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_text
 from wavelet_gis.notes import warn
+from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, told
 from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
-from wavelet_gis.tiles.piece import PIECES, read_record, sha256_of
+from wavelet_gis.tiles.piece import LOOSE, PIECES, make_piece, read_record, sha256_of
 from wavelet_gis.tiles.plan import LEVELS, PLAN, TILE, Piece, TilePlan, plan_of_rasters
 from wavelet_gis.tiles.runner import Job, records_of, require_dask
 
-__all__ = ["Tiled", "tile_rasters"]
+__all__ = ["Tiled", "tile_clouds", "tile_rasters"]
 
 #: Told of each piece: its record, how many are done, how many there are.
 OnPiece = Callable[[dict[str, Any], int, int], None]
@@ -50,9 +51,11 @@ class Tiled:
         """Return what it is as JSON-able values."""
         plan, records = self.index.plan, self.index.records
         whole = [row for row in records.values() if row["status"] == "whole"]
+        size = {"n_rows": plan.shape[0], "n_columns": plan.shape[1]}
+        if plan.points is not None:
+            size = {"n_files": len(plan.files), "n_points": plan.points.n_points}
         return {
-            "n_rows": plan.shape[0],
-            "n_columns": plan.shape[1],
+            **size,
             "n_stages": plan.n_stages,
             "n_tiles": len(plan.pieces(0)),
             "n_pieces": len(records),
@@ -118,11 +121,73 @@ def tile_rasters(
     TerrainWarning
         Of tiles that could not be made: they are set aside, and the others go on without them.
     """
+    _require_workers(workers, scheduler)
+    plan = plan_of_rasters(data, tile=tile, levels=levels, **options)
+    return _tiled(plan, folder, workers, scheduler, overwrite, on_piece)
+
+
+def tile_clouds(
+    data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    folder: str | os.PathLike[str],
+    *,
+    tile: float | tuple[float, float] | None = None,
+    levels: int = LEVELS,
+    workers: int = 1,
+    scheduler: str | None = None,
+    overwrite: bool = False,
+    on_piece: OnPiece | None = None,
+    **options: Any,
+) -> Tiled:
+    """Turn point clouds into a tiled pyramid, as `tile_rasters` does with rasters.
+
+    Parameters
+    ----------
+    data : path or sequence of path
+        LAS, LAZ or COPC files of one point format, or a folder of such; each is read once, a batch
+        at a time.
+    folder, levels, scheduler, overwrite, on_piece
+        See `tile_rasters`.
+    tile : float or (float, float), optional
+        Side of a tile, or its width and height, in the unit of x and y; by default such that a
+        tile has about a million points.
+    workers : int
+        Processes that make pieces; each needs some 1,000 bytes for a point of a tile.
+    **options
+        ``crs``, ``vertical_unit``, ``attributes``, ``classes``, ``keep_noise``, ``keep_withheld``,
+        ``duplicates`` and ``wavelets``; see `wavelet_gis.tiles.cloud.plan.plan_of_clouds`.
+
+    Raises
+    ------
+    InputFileError, OutputFileError, OptionError, MissingDependencyError
+        As `tile_rasters`.
+
+    Warns
+    -----
+    TerrainWarning
+        Of tiles that could not be made: they are set aside, and the others go on without them.
+    """
+    from wavelet_gis.tiles.cloud.plan import plan_of_clouds
+
+    _require_workers(workers, scheduler)
+    plan = plan_of_clouds(data, tile=tile, levels=levels, **options)
+    return _tiled(plan, folder, workers, scheduler, overwrite, on_piece)
+
+
+def _require_workers(workers: int, scheduler: str | None) -> None:
     if workers < 1:
         raise OptionError("{0} is {workers}; give at least 1.", "workers", workers=workers)
     if scheduler is not None:
         require_dask()
-    plan = plan_of_rasters(data, tile=tile, levels=levels, **options)
+
+
+def _tiled(
+    plan: TilePlan,
+    folder: str | os.PathLike[str],
+    workers: int,
+    scheduler: str | None,
+    overwrite: bool,
+    on_piece: OnPiece | None,
+) -> Tiled:
     place = _prepared(Path(folder).absolute(), plan, overwrite)
     n_total = sum(len(plan.pieces(stage)) for stage in range(plan.n_stages))
     n_made = n_found = 0
@@ -136,13 +201,17 @@ def tile_rasters(
                 if on_piece is not None:
                     on_piece(record, n_made + n_found, n_total)
             else:
-                jobs.append((str(place), piece, inputs))
+                jobs.append((make_piece, (str(place), piece, inputs)))
+        if stage == 0 and plan.points is not None:
+            _cut(place, plan, [arguments[1] for _, arguments in jobs], workers, scheduler)
         for record in records_of(jobs, workers, scheduler):
             n_made += 1
             if on_piece is not None:
                 on_piece(record, n_made + n_found, n_total)
     index = open_index(place)
     write_index(index)
+    if plan.points is not None and all(row["status"] != "failed" for row in index.records.values()):
+        shutil.rmtree(place / CUT, ignore_errors=True)
     tiled = Tiled(index, n_made, n_found)
     if tiled.failed:
         first = tiled.failed[0]
@@ -152,7 +221,7 @@ def tile_rasters(
             "{count} of {n_pieces} pieces could not be made and were set aside, the first at stage "
             "{stage}, row {row}, column {column}: {reason} (mend that and start again; the rest is "
             "kept)",
-            stacklevel=3,
+            stacklevel=4,
             count=len(tiled.failed),
             n_pieces=n_total,
             stage=first["stage"],
@@ -161,6 +230,21 @@ def tile_rasters(
             reason=first["reason"].rstrip("."),
         )
     return tiled
+
+
+def _cut(
+    folder: Path, plan: TilePlan, pieces: Sequence[Piece], workers: int, scheduler: str | None
+) -> None:
+    """Put the points of the files that some tiles need beside one another by tile."""
+    from wavelet_gis.tiles.cloud.cut import is_cut, make_cut
+    from wavelet_gis.tiles.cloud.tile import inputs_of
+
+    needed = sorted({number for piece in pieces for number in inputs_of(plan, piece)})
+    jobs: list[Job] = [
+        (make_cut, (str(folder), number)) for number in needed if not is_cut(folder, plan, number)
+    ]
+    for _ in records_of(jobs, workers, scheduler):
+        pass  # what is wrong with one is told by the tiles that need it
 
 
 def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
@@ -181,7 +265,8 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
                 "overwrite",
                 path=folder,
             )
-        shutil.rmtree(folder / PIECES, ignore_errors=True)
+        for name in (PIECES, CUT, SOURCES):
+            shutil.rmtree(folder / name, ignore_errors=True)
         (folder / INDEX).unlink(missing_ok=True)
     folder.mkdir(exist_ok=True)
     if not (folder / PLAN).is_file() or (folder / PLAN).read_text("utf-8") != text:
@@ -192,10 +277,15 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
 
 def _inputs(folder: Path, plan: TilePlan, piece: Piece) -> dict[str, str]:
     """Return what a piece is made from: files and their dates, or pieces and their checksums."""
+    if piece.stage == 0 and plan.points is not None:
+        from wavelet_gis.tiles.cloud.tile import inputs_of
+
+        near = (plan.files[number] for number in inputs_of(plan, piece))
+        return {file.path: told(file) for file in near}
     if piece.stage == 0:
         top, left, bottom, right = plan.cells(piece)
         return {
-            file.path: f"{file.n_bytes} bytes of {file.changed}"
+            file.path: told(file)
             for file in plan.files
             if file.row <= bottom
             and file.row + file.height > top
@@ -215,7 +305,8 @@ def _is_whole(
 ) -> bool:
     if record.get("plan") != plan.checksum or record.get("inputs") != inputs:
         return False
-    if record["status"] != "whole":
+    if record["status"] not in ("whole", "loose"):
         return bool(record["status"] == "empty")
-    path = folder / PIECES / f"{piece.name}.gpkg"
+    suffix = ".gpkg" if record["status"] == "whole" else LOOSE
+    path = folder / PIECES / f"{piece.name}{suffix}"
     return path.is_file() and sha256_of(path) == record["sha256"]

@@ -36,10 +36,44 @@ def test_from_a_raster_to_tiles_and_back(done, refused, tmp_path):
     assert "--bbox is for tile sets" in message
 
 
-def test_what_is_no_raster_is_refused(refused, tmp_path):
-    write_las(tmp_path / "cloud.laz")
-    message = refused("tile", tmp_path / "cloud.laz", tmp_path / "tiles")
-    assert "tiles are made of rasters only" in message
+def test_from_clouds_to_tiles_and_back(done, refused, tmp_path):
+    cloud = write_las(tmp_path / "cloud.las", 6000)
+    tiles, index = tmp_path / "tiles", tmp_path / "tiles" / "index.gpkg"
+    arguments = ("tile", cloud, tiles, "--tile", "50,100", "--levels", 4, "--workers", 1)
+    figures = done(*arguments, "--json").figures
+    assert (figures["n_points"], figures["n_files"], figures["n_tiles"]) == (6000, 1, 2)
+    assert "6,000 points of 1 file in 2 tiles" in done(*arguments).out
+    done("reconstruct", index, tmp_path / "back.las")
+    assert (tmp_path / "back.las").read_bytes() == cloud.read_bytes()
+    box = "500010,5100010,500030,5100030"
+    part = done("extract", index, tmp_path / "a.ply", "--level", 20, "--bbox", box, "--json")
+    assert part.figures["n_vertices"] > 10
+    message = refused("reconstruct", index, tmp_path / "back.tif")
+    assert "give an output ending in .las or .laz" in message
+    message = refused("tile", cloud, tmp_path / "u", "--band", 1)
+    assert "--band is for a raster" in message
+    dem = write_tif(tmp_path / "dem.tif", hills(70, 90))
+    message = refused("tile", dem, cloud, tmp_path / "u")
+    assert "the others are rasters" in message
+    message = refused("tile", dem, tmp_path / "u", "--classes", 2)
+    assert "--classes is for a point cloud" in message
+    message = refused("tile", dem, tmp_path / "u", "--tile", "8.5")
+    assert "whole number of cells" in message
+
+
+def test_several_clouds_come_back_into_a_folder(done, refused, tmp_path):
+    (tmp_path / "in").mkdir()
+    for name, seed in (("a.las", 1), ("b.las", 2)):
+        write_las(tmp_path / "in" / name, 2000, seed=seed)
+    index = tmp_path / "tiles" / "index.gpkg"
+    done("tile", tmp_path / "in", tmp_path / "tiles", "--levels", 3, "--workers", 1)
+    assert "4,000 points in 2 files" in done("reconstruct", index, tmp_path / "out").out
+    for name in ("a.las", "b.las"):
+        back = tmp_path / "out" / name
+        assert back.read_bytes() == (tmp_path / "in" / name).read_bytes()
+    assert "--overwrite to replace it" in refused("reconstruct", index, tmp_path / "out")
+    message = refused("reconstruct", index, index)
+    assert "name a folder" in message
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")

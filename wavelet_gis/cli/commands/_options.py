@@ -113,10 +113,8 @@ def add_place_arguments(group: argparse._ArgumentGroup) -> None:
     )
 
 
-def add_input_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what says how a DEM or a LAS file is read."""
-    group = parser.add_argument_group("input")
-    add_raster_arguments(group)
+def add_point_arguments(group: argparse._ArgumentGroup) -> None:
+    """Add what says how a LAS file is read, and which of its points make the surface."""
     group.add_argument(
         "--attributes",
         type=names,
@@ -127,18 +125,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "of points",
     )
     group.add_argument(
-        "--class-channels",
-        action="store_true",
-        help="lift classes, return numbers and other categories as one channel of 0 and 1 each",
-    )
-    group.add_argument(
         "--classes", type=_classes, metavar="N,N", help="only points of these classes"
-    )
-    group.add_argument(
-        "--drop-other-dimensions",
-        dest="carry",
-        action="store_false",
-        help="do not carry the dimensions that are not lifted; reconstruct writes them as zero",
     )
     group.add_argument(
         "--keep-noise",
@@ -156,6 +143,24 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
             metavar="RULE",
             help="which height points that share x and y have in common, by default the first of",
         ),
+    )
+
+
+def add_input_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what tells how a DEM or a LAS file is read."""
+    group = parser.add_argument_group("input")
+    add_raster_arguments(group)
+    add_point_arguments(group)
+    group.add_argument(
+        "--class-channels",
+        action="store_true",
+        help="lift classes, return numbers and other categories as one channel of 0 and 1 each",
+    )
+    group.add_argument(
+        "--drop-other-dimensions",
+        dest="carry",
+        action="store_false",
+        help="do not carry the dimensions that are not lifted; reconstruct writes them as zero",
     )
     group.add_argument(
         "--max-edge",

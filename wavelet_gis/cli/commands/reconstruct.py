@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from wavelet_gis.cli.commands._options import add_overwrite_argument
 from wavelet_gis.cli.console import Console
+
+if TYPE_CHECKING:
+    from wavelet_gis.tiles.index import TileIndex
 
 ORDER = 40
 HELP = "Give back the DEM or the LAS/LAZ file that a pyramid was made from, bit for bit."
@@ -14,7 +19,11 @@ HELP = "Give back the DEM or the LAS/LAZ file that a pyramid was made from, bit 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("file", help="a pyramid file, or the index.gpkg of a tile set")
-    parser.add_argument("output", help="a raster, such as .tif, or .las or .laz, as the input was")
+    parser.add_argument(
+        "output",
+        help="a raster, such as .tif, or .las or .laz, as the input was; a folder for the several "
+        "clouds of a tile set",
+    )
     add_overwrite_argument(parser)
 
 
@@ -26,10 +35,10 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_gis.workflows.reconstruct import check_restored_output, reconstruct_file
     from wavelet_gis.workflows.save import save
 
-    check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
     if is_index(arguments.file):
         _of_tiles(arguments, console)
         return
+    check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
     check_restored_output(
         arguments.output, origin_kind(arguments.file), overwrite=arguments.overwrite
     )
@@ -43,14 +52,18 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
 
 
 def _of_tiles(arguments: argparse.Namespace, console: Console) -> None:
-    from wavelet_gis.io.atomic import new_file
+    from wavelet_gis.io.atomic import check_output, new_file
     from wavelet_gis.io.raster import write_dem
     from wavelet_gis.tiles.index import open_index
     from wavelet_gis.tiles.read import restored_raster
     from wavelet_gis.workflows.reconstruct import check_restored_output
 
-    check_restored_output(arguments.output, "raster", overwrite=arguments.overwrite)
     index = open_index(arguments.file)
+    if index.plan.points is not None:
+        _of_cloud_tiles(arguments, console, index)
+        return
+    check_output(arguments.output, overwrite=arguments.overwrite, inputs=(arguments.file,))
+    check_restored_output(arguments.output, "raster", overwrite=arguments.overwrite)
     dem = restored_raster(index)
     with new_file(arguments.output, overwrite=arguments.overwrite) as scratch:
         write_dem(scratch, dem, index.plan.coordinate_system.wkt)
@@ -58,4 +71,39 @@ def _of_tiles(arguments: argparse.Namespace, console: Console) -> None:
     console.say(f"{size}, checksums of all tiles verified, the original; {arguments.output}")
     console.figures(
         {"output": str(arguments.output), "kind": "raster", "is_exact": True, "size": size}
+    )
+
+
+def _of_cloud_tiles(arguments: argparse.Namespace, console: Console, index: TileIndex) -> None:
+    from wavelet_gis.errors import OutputFileError
+    from wavelet_gis.io.atomic import check_output
+    from wavelet_gis.tiles.cloud.restore import names_of_sources, restore_source
+    from wavelet_gis.workflows.reconstruct import check_restored_output
+
+    output, names = Path(arguments.output), names_of_sources(index)
+    is_one = len(names) == 1
+    if is_one:
+        check_output(output, overwrite=arguments.overwrite, inputs=(arguments.file,))
+        check_restored_output(output, "points", overwrite=arguments.overwrite)
+        places = [output]
+    else:
+        if output.exists() and not output.is_dir():
+            raise OutputFileError(
+                f"{output}: this is a file, and the tiles are of {len(names)} clouds; name a "
+                "folder."
+            )
+        output.mkdir(exist_ok=True)
+        places = [output / name for name in names]
+        for place, file in zip(places, index.plan.files, strict=True):
+            check_output(place, overwrite=arguments.overwrite, inputs=(file.path,))
+    n_points = 0
+    with console.progress("reconstructing") as progress:
+        for number, place in enumerate(places):
+            n_points += restore_source(index, number, place, overwrite=arguments.overwrite)
+            progress((number + 1) / len(places))
+    files = "" if is_one else f" in {len(places):,} files"
+    size = f"{n_points:,} points{files}"
+    console.say(f"{size}, checksums of all tiles verified, the original; {arguments.output}")
+    console.figures(
+        {"output": str(arguments.output), "kind": "points", "is_exact": True, "size": size}
     )

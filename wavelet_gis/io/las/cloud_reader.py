@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -37,9 +38,16 @@ __all__ = [
     "ALIASES",
     "HEIGHT_ABOVE_GROUND",
     "NOISE_CLASSES",
+    "carried_fields",
+    "decoding",
     "laspy_header",
+    "laz_job",
+    "lifted_attributes",
+    "masks_aside",
+    "projection_records",
     "read_cloud",
     "require_laspy",
+    "tail_of",
 ]
 
 #: Name of the attribute that is computed rather than read.
@@ -125,12 +133,7 @@ def read_cloud(
             n_announced=layout.n_points,
             n_points=len(array),
         )
-    lifted = [
-        attribute
-        for wanted in dict.fromkeys(attributes)
-        for attribute in _attributes(name, wanted, points, header)
-    ]
-    _check_names(name, lifted)
+    lifted = lifted_attributes(name, attributes, points, header)
     chosen = _chosen(name, points, classes)
     if ground_first and classes is None:
         chosen = _ground(points)
@@ -144,7 +147,7 @@ def read_cloud(
         scales=np.array(layout.scales, dtype=np.float64),
         offsets=np.array(layout.offsets, dtype=np.float64),
         attributes=tuple(replace(a, values=_select(a.values, chosen)) for a in lifted),
-        carried=_carried(points, lifted, chosen) if carry else {},
+        carried=carried_fields(points, lifted, chosen) if carry else {},
         header=np.frombuffer(layout.block, np.uint8),
         evlrs=np.frombuffer(tail, np.uint8),
         n_in_file=len(array),
@@ -154,7 +157,7 @@ def read_cloud(
     )
     _check_extent(name, layout, points)
     _tell_of_waveforms(name, layout)
-    place = las_crs(_projection_records(layout, tail, tail_at))
+    place = las_crs(projection_records(layout, tail, tail_at))
     for note in place.notes:
         warn(CrsWarning, "las_crs", "{name}: {fact}", name=name, fact=note, stacklevel=2)
     return cloud, place
@@ -193,15 +196,21 @@ def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes
             ) from error
         for note in layout.notes:
             _tell("las_header", "{name}: {fact}", name=name, fact=note)
-        start = layout.points_end
-        if layout.is_compressed:
-            places = [place for place in (layout.evlr_start, layout.waveform_start) if place]
-            start = min(places, default=os.fstat(stream.fileno()).st_size)
-        stream.seek(start)
-        tail, tail_at, note = las_block.tail_of(stream.read(), start, layout)
-        if note:
-            _tell("las_header", "{name}: {fact}", name=name, fact=note)
+        tail, tail_at = tail_of(name, layout, stream)
     return layout, header, points, tail, tail_at
+
+
+def tail_of(name: str, layout: LasLayout, stream: BinaryIO) -> tuple[bytes, int | None]:
+    """Return what is kept of what follows the points, and where it was."""
+    start = layout.points_end
+    if layout.is_compressed:
+        places = [place for place in (layout.evlr_start, layout.waveform_start) if place]
+        start = min(places, default=os.fstat(stream.fileno()).st_size)
+    stream.seek(start)
+    tail, tail_at, note = las_block.tail_of(stream.read(), start, layout)
+    if note:
+        _tell("las_header", "{name}: {fact}", name=name, fact=note)
+    return tail, tail_at
 
 
 def laspy_header(name: str, layout: LasLayout) -> LasHeader:
@@ -231,32 +240,44 @@ def _points(name: str, layout: LasLayout, header: LasHeader, stream: BinaryIO) -
         stream.seek(layout.points_start)
         array = np.fromfile(stream, dtype, layout.n_points)
         return laspy.PackedPointRecord(array, header.point_format)
+    job = laz_job(name, layout)
+    array = np.empty(layout.n_points, dtype)
+    with decoding(name):
+        laz_decoder.decoded(job, array.view(np.uint8))
+    return laspy.PackedPointRecord(array, header.point_format)
+
+
+def laz_job(name: str, layout: LasLayout) -> laz_decoder.Job:
+    """Return what the decoder must know of a LAZ file, once its header is believed."""
     if find_spec("lazrs") is None:
         raise MissingDependencyError(
             f"{name}: reading LAZ needs lazrs; install it with 'pip install lazrs'."
         )
-    n_bytes = os.fstat(stream.fileno()).st_size - layout.points_start
+    n_bytes = os.stat(name).st_size - layout.points_start
     if layout.n_points * layout.record_length > _MOST_COMPRESSED * n_bytes:
         raise InputFileError(
             f"{name}: the header announces {layout.n_points} points in {n_bytes} compressed bytes; "
             "the file is damaged, get it again."
         )
-    array = np.empty(layout.n_points, dtype)
-    job = laz_decoder.Job(
+    return laz_decoder.Job(
         path=name,
         start=layout.points_start,
         record=laszip_record(name, layout).data,
         record_length=layout.record_length,
         n_points=layout.n_points,
     )
+
+
+@contextmanager
+def decoding(name: str) -> Iterator[None]:
+    """Tell of what the decoder refuses as of any other damaged file."""
     try:
-        laz_decoder.decoded(job, array.view(np.uint8))
+        yield
     except laz_decoder.DecodeError as error:
         raise InputFileError(
             f"{name}: the compressed points cannot be read ({error}); the file is damaged, get it "
             "again."
         ) from error
-    return laspy.PackedPointRecord(array, header.point_format)
 
 
 def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> None:
@@ -289,7 +310,7 @@ def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> No
             )
 
 
-def _projection_records(
+def projection_records(
     layout: LasLayout, tail: bytes, tail_at: int | None
 ) -> list[tuple[int, bytes]]:
     """Return the records on the CRS: number and content."""
@@ -313,12 +334,9 @@ def _aside(
     keep_withheld: bool,
 ) -> NDArray[np.bool_] | None:
     """Return which of the chosen points are carried only, and say how many they are."""
-    of_point = _select(np.array(points["classification"]), chosen)
-    noise_classes = [] if keep_noise else [c for c in NOISE_CLASSES if c not in (classes or ())]
-    is_noise = np.isin(of_point, noise_classes)
-    is_withheld = _select(np.array(points["withheld"]).astype(bool), chosen)
-    if keep_withheld:
-        is_withheld = np.zeros_like(is_withheld)
+    is_withheld, is_noise = (
+        _select(mask, chosen) for mask in masks_aside(points, classes, keep_noise, keep_withheld)
+    )
     aside = is_noise | is_withheld
     n_aside = int(np.count_nonzero(aside))
     if n_aside == 0:
@@ -357,6 +375,51 @@ def _aside(
         parts=" and ".join(parts),
     )
     return aside
+
+
+def masks_aside(
+    points: PackedPointRecord,
+    classes: Sequence[int] | None,
+    keep_noise: bool,
+    keep_withheld: bool,
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which points are carried only: for their withheld flag, and as noise.
+
+    Parameters
+    ----------
+    points : PackedPointRecord
+    classes, keep_noise, keep_withheld
+        See `read_cloud`.
+    """
+    of_point = np.array(points["classification"])
+    noise_classes = [] if keep_noise else [c for c in NOISE_CLASSES if c not in (classes or ())]
+    is_withheld = np.array(points["withheld"]).astype(bool)
+    if keep_withheld:
+        is_withheld = np.zeros_like(is_withheld)
+    return is_withheld, np.isin(of_point, noise_classes)
+
+
+def lifted_attributes(
+    name: str, wanted: Sequence[str], points: PackedPointRecord, header: LasHeader
+) -> list[PointAttribute]:
+    """Return the attributes that are lifted, of all points.
+
+    Parameters
+    ----------
+    name : str
+        Of the file, for messages.
+    wanted : sequence of str
+        See `read_cloud`.
+    points : PackedPointRecord
+    header : LasHeader
+    """
+    lifted = [
+        attribute
+        for one in dict.fromkeys(wanted)
+        for attribute in _attributes(name, one, points, header)
+    ]
+    _check_names(name, lifted)
+    return lifted
 
 
 def _attributes(
@@ -453,8 +516,10 @@ def _select(values: NDArray[Any], chosen: NDArray[np.bool_] | None) -> NDArray[A
     return np.ascontiguousarray(values if chosen is None else values[chosen])
 
 
-def _carried(
-    points: PackedPointRecord, lifted: list[PointAttribute], chosen: NDArray[np.bool_] | None
+def carried_fields(
+    points: PackedPointRecord,
+    lifted: list[PointAttribute],
+    chosen: NDArray[np.bool_] | None = None,
 ) -> dict[str, NDArray[Any]]:
     """Return the fields of the records that the pyramid does not hold.
 

@@ -28,7 +28,10 @@ from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
 if TYPE_CHECKING:
     from laspy.point.record import PackedPointRecord
 
-__all__ = ["write_cloud"]
+__all__ = ["record_array", "write_cloud", "write_records"]
+
+#: Points written, and read back, at once.
+_BATCH = 1_000_000
 
 
 def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
@@ -56,19 +59,83 @@ def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
             layout = las_block.described(layout, attribute.name, "Height above ground")
             heights = attribute.values.astype("<f4").reshape(-1, 1).view(np.uint8)
             content = np.hstack([content, heights])
+    is_altered = cloud.n_points != was.n_points or cloud.is_altered
+    counted = cloud if is_altered else None
+    _write(path, was, layout, content, cloud.evlrs.tobytes(), cloud.evlrs_at, counted, record)
+
+
+def record_array(cloud: PointCloud) -> NDArray[Any]:
+    """Return the point records of a cloud, as its file has them."""
+    layout = las_block.rebuilt(parse_layout("the stored LAS header", cloud.header.tobytes()))
+    return _record_of(cloud, layout).array
+
+
+def write_records(
+    path: str | os.PathLike[str],
+    was: LasLayout,
+    records: NDArray[Any],
+    tail: bytes,
+    tail_at: int | None,
+    *,
+    is_altered: bool,
+) -> None:
+    """Write point records with the header and the tail of a file that was read.
+
+    Parameters
+    ----------
+    path : path
+        ``.laz`` is compressed, anything else is not.
+    was : LasLayout
+        Of the file that was read.
+    records : (n_points,) structured array
+        Of its point format; a memory map may be larger than memory.
+    tail, tail_at
+        See `wavelet_gis.io.las.batches.CloudHead`.
+    is_altered : bool
+        Whether these are other points than the file had, to be counted anew.
+
+    Raises
+    ------
+    OutputFileError
+        As `write_cloud`.
+    """
+    layout = las_block.rebuilt(was)
+    header = laspy_header("the stored LAS header", layout)
+    content = records.view(np.uint8).reshape(len(records), -1)
+    counted = record = None
+    if is_altered:
+        record = require_laspy().PackedPointRecord(records, header.point_format)
+        counted = PointCloud(
+            integers=np.column_stack([records[axis] for axis in "XYZ"]),
+            scales=np.array(layout.scales),
+            offsets=np.array(layout.offsets),
+        )
+    _write(path, was, layout, content, tail, tail_at, counted, record)
+
+
+def _write(
+    path: str | os.PathLike[str],
+    was: LasLayout,
+    layout: LasLayout,
+    content: NDArray[np.uint8],
+    tail: bytes,
+    tail_at: int | None,
+    counted: PointCloud | None,
+    record: PackedPointRecord | None,
+) -> None:
     compressor = _laz_record(path, layout) if Path(path).suffix.lower() == ".laz" else None
     if compressor is not None:
         layout = las_block.rebuilt(layout, laszip=bytes(compressor.record_data()))
-    block, tail = layout.block, cloud.evlrs.tobytes()
-    if cloud.n_points != was.n_points or cloud.is_altered:
-        block = las_block.with_counts(block, cloud, _return_numbers(record))
+    block = layout.block
+    if counted is not None and record is not None:
+        block = las_block.with_counts(block, counted, _return_numbers(record))
     with open(path, "wb") as stream:
         stream.write(block)
-        _write_points(path, stream, content.reshape(-1), layout.point_format, compressor)
+        _write_points(path, stream, content, layout.point_format, compressor)
         end = stream.seek(0, os.SEEK_END)
         stream.write(tail)
         stream.seek(0)
-        stream.write(las_block.moved(block, was, tail, cloud.evlrs_at, end))
+        stream.write(las_block.moved(block, was, tail, tail_at, end))
     read_back(path, partial(_verify, layout=layout, content=content))
 
 
@@ -136,15 +203,18 @@ def _write_points(
     point_format: int,
     laz: Any,
 ) -> None:
+    batches = [content[k : k + _BATCH] for k in range(0, len(content), _BATCH)]
     if laz is None:
-        stream.write(content.data)
+        for batch in batches:
+            stream.write(np.ascontiguousarray(batch).data)
         return
     import lazrs
 
     try:
         # One thread: a pool of them would hang in a process that is forked later.
         compressor = lazrs.LasZipCompressor(stream, laz)
-        compressor.compress_many(content)
+        for batch in batches:
+            compressor.compress_many(np.ascontiguousarray(batch).reshape(-1))
         compressor.done()
     except lazrs.LazrsError as error:
         raise _not_compressible(path, point_format, error) from error
@@ -152,12 +222,24 @@ def _write_points(
 
 def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np.uint8]) -> None:
     """Read the points back: lazrs loses some waveform references without a word."""
-    back = np.empty_like(content)
+    n_read = n_other = 0
+
+    def take(batch: memoryview) -> None:
+        nonlocal n_read, n_other
+        back = np.frombuffer(batch, np.uint8).reshape(-1, content.shape[1])
+        due = content[n_read : n_read + len(back)]
+        n_other += int(np.count_nonzero((back[: len(due)] != due).any(axis=1)))
+        n_read += len(back)
+
     if not layout.is_compressed:
         with open(path, "rb") as stream:
             stream.seek(layout.points_start)
-            n_bytes = stream.readinto(back.reshape(-1).data)
-        if n_bytes != content.nbytes or not np.array_equal(back, content):
+            n_bytes = _BATCH * content.shape[1]
+            while n_read < len(content) and (batch := stream.read(n_bytes)):
+                take(memoryview(batch[: len(batch) // content.shape[1] * content.shape[1]]))
+                if len(batch) < n_bytes:
+                    break
+        if n_read < len(content) or n_other:
             raise OutputFileError("the points are not those that were written")
         return
     job = laz_decoder.Job(
@@ -168,11 +250,10 @@ def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np
         n_points=len(content),
     )
     try:
-        laz_decoder.decoded(job, back)
+        laz_decoder.decoded_in_batches(job, _BATCH, take)
     except laz_decoder.DecodeError as error:
         raise _not_compressible(path, layout.point_format, error) from error
-    if not np.array_equal(back, content):
-        n_other = int(np.count_nonzero((back != content).any(axis=1)))
+    if n_other:
         raise _not_compressible(
             path, layout.point_format, f"{n_other} of {len(content)} points come back changed"
         )

@@ -17,13 +17,13 @@ import struct
 import subprocess
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
-__all__ = ["DecodeError", "Job", "decode", "decoded", "interpreter"]
+__all__ = ["DecodeError", "Job", "decode", "decoded", "decoded_in_batches", "interpreter"]
 
 #: Points decoded at a time.
 BATCH = 50_000
@@ -99,7 +99,39 @@ def decoded(job: Job, out: Any) -> None:
 
         decode(job, put)
         return
-    _in_a_child(python, job, view)
+    _in_a_child(python, job, [view])
+
+
+def decoded_in_batches(job: Job, n_points: int, take: Callable[[memoryview], object]) -> None:
+    """Hand the point records of a LAZ file on, so many at a time at most.
+
+    Parameters
+    ----------
+    job : Job
+        The file and what its header says.
+    n_points : int
+        In a batch.
+    take : callable
+        Given whole records, in memory that the next batch is decoded into.
+
+    Raises
+    ------
+    DecodeError
+        As `decoded`; what was taken before is of no use then.
+    """
+    python = interpreter()
+    if python is None:
+        decode(job, take)
+        return
+    buffer = memoryview(bytearray(min(n_points, job.n_points) * job.record_length))
+
+    def batches() -> Iterator[memoryview]:
+        for start in range(0, job.n_points, n_points):
+            batch = buffer[: min(n_points, job.n_points - start) * job.record_length]
+            yield batch  # filled meanwhile
+            take(batch)
+
+    _in_a_child(python, job, batches())
 
 
 def interpreter() -> str | None:
@@ -241,7 +273,8 @@ def _words(error: BaseException) -> str:
     return lines[0].rstrip(".") if lines else type(error).__name__
 
 
-def _in_a_child(python: str, job: Job, view: memoryview) -> None:
+def _in_a_child(python: str, job: Job, views: Iterable[memoryview]) -> None:
+    """Fill one view after the other with the records."""
     spec = find_spec("lazrs")
     places = [] if spec is None else list(spec.submodule_search_locations or ())
     home = os.path.dirname(places[0]) if places else ""
@@ -272,13 +305,12 @@ def _in_a_child(python: str, job: Job, view: memoryview) -> None:
         listener.start()
         clock.start()
         try:
-            filled = 0
-            while filled < len(view):
-                n_read = child.stdout.readinto(view[filled:])  # type: ignore[attr-defined]
-                if not n_read:
+            is_whole = False
+            for view in views:
+                if not _is_filled(view, child.stdout):
                     break
-                filled += n_read
-            is_whole = filled == len(view) and child.wait() == 0
+            else:
+                is_whole = child.wait() == 0
         finally:
             is_late = not clock.is_alive()
             clock.cancel()
@@ -288,6 +320,17 @@ def _in_a_child(python: str, job: Job, view: memoryview) -> None:
         listener.join(timeout=1.0)
     if not is_whole:
         raise DecodeError(_what_happened(b"".join(said), is_late))
+
+
+def _is_filled(view: memoryview, pipe: Any) -> bool:
+    """Fill a view; return whether there was enough."""
+    filled = 0
+    while filled < len(view):
+        n_read = pipe.readinto(view[filled:])
+        if not n_read:
+            return False
+        filled += n_read
+    return True
 
 
 def _listen(pipe: BinaryIO, said: list[bytes]) -> None:

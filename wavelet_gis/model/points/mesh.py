@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.points.origin import CloudOrigin
 from wavelet_gis.notes import warn
 
-__all__ = ["cloud_mesh"]
+__all__ = ["CloudVertices", "cloud_mesh", "cloud_vertices"]
 
 #: Gaps that take more than this share of a cloud's area are told of.
 TOLD_GAPS = 0.05
@@ -66,6 +66,46 @@ def cloud_mesh(
     PointCloudWarning
         How many points were merged and what that costs; gaps, and points without a face.
     """
+    vertices, origin, attributes, names = cloud_vertices(cloud, frame, duplicates)
+    faces = delaunay_faces(vertices[:, :2])
+    gaps = gaps_of(vertices[:, :2], faces)
+    origin = replace(origin, spacing=gaps.spacing)
+    faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
+    faces = canonical_faces(faces)  # an order that need not be stored
+    _tell_of_merging(name, origin)
+    return TriangleMesh(vertices, faces, attributes, names), origin
+
+
+class CloudVertices(NamedTuple):
+    """The vertices that a cloud's points give.
+
+    vertices : (n, 3) float64, in the working frame
+    origin : CloudOrigin, how to come back from them
+    attributes : (n, k) float64
+    names : tuple of str, of the attributes
+    """
+
+    vertices: NDArray[np.float64]
+    origin: CloudOrigin
+    attributes: NDArray[np.float64]
+    names: tuple[str, ...]
+
+
+def cloud_vertices(
+    cloud: PointCloud, frame: LocalFrame, duplicates: str | None = None
+) -> CloudVertices:
+    """Return the vertices of the points, those that share x and y merged.
+
+    Parameters
+    ----------
+    cloud, frame, duplicates
+        See `cloud_mesh`.
+
+    Raises
+    ------
+    InputFileError
+        When a coordinate or an attribute is not finite.
+    """
     rule = DUPLICATE_RULES.chosen(duplicates)
     used = slice(None) if cloud.aside is None else ~cloud.aside
     vertices = frame.to_local(cloud.coordinates()[used])
@@ -90,13 +130,7 @@ def cloud_mesh(
     vertices = vertices[kept]
     if rule.height is not None:
         vertices[:, 2] = frame.local_z(stored * cloud.scales[2] + cloud.offsets[2])
-    faces = delaunay_faces(vertices[:, :2])
-    gaps = gaps_of(vertices[:, :2], faces)
-    origin = replace(origin, spacing=gaps.spacing)
-    faces = _without_gaps(name, vertices[:, :2], faces, gaps, max_edge, concave)
-    faces = canonical_faces(faces)  # an order that need not be stored
-    _tell_of_merging(name, origin)
-    return TriangleMesh(vertices, faces, attributes, names), origin
+    return CloudVertices(vertices, origin, attributes, names)
 
 
 def _without_gaps(

@@ -1,0 +1,345 @@
+"""Tiled pyramids of point clouds: seams, integrals, every point back, resuming, lost workers."""
+
+import copy
+import os
+import random
+import shutil
+import subprocess
+import sys
+import time
+
+import laspy
+import numpy as np
+import pytest
+from gis.samples import assert_same_cloud, write_las
+from gis.tiles.test_tiles import checksums, seams, whole_levels, workers_of
+
+import wavelet_gis as wg
+from wavelet_core.errors import OptionError
+from wavelet_core.metrics import surface_errors
+from wavelet_gis.errors import InputFileError, TerrainWarning
+from wavelet_gis.tiles.cloud.cut import CUT, source_record
+from wavelet_gis.tiles.index import open_index
+from wavelet_gis.tiles.plan import Piece, TilePlan
+
+OPTIONS = {"tile": 33, "levels": 4, "attributes": ("intensity",)}
+
+pytestmark = pytest.mark.filterwarnings("ignore::wavelet_gis.errors.PointCloudWarning")
+
+
+def split(path, folder):
+    """Write a cloud as two files that meet at x = 50 and differ in their offsets."""
+    las = laspy.read(path)
+    folder.mkdir()
+    is_east = np.asarray(las.x) - 500000 > 50
+    for name, mask, offset in (("west.las", ~is_east, 0), ("east.laz", is_east, 17)):
+        shift = np.array([offset, -offset, offset])
+        part = laspy.LasData(copy.deepcopy(las.header), las.points[mask].copy())
+        part.change_scaling(offsets=las.header.offsets + shift)
+        part.write(folder / name)
+
+
+@pytest.fixture(scope="module")
+def cloud(tmp_path_factory):
+    """Ground and trees, some points withheld and some noise, duplicates, a pond at a crossing."""
+    folder = tmp_path_factory.mktemp("cloud")
+    path = write_las(folder / "raw.las", 12000)
+    las = laspy.read(path)
+    rng = np.random.default_rng(1)
+    las.withheld = rng.random(len(las.x)) < 0.01
+    noise = rng.random(len(las.x)) < 0.01
+    las.classification = np.where(noise, 7, np.asarray(las.classification)).astype(np.uint8)
+    las.z = np.where(noise, 5000.0, np.asarray(las.z))
+    dry = np.hypot(np.asarray(las.x) - 500033.3, np.asarray(las.y) - 5100066.7) > 6
+    las.points = las.points[dry]
+    las.write(folder / "all.las")
+    return folder / "all.las"
+
+
+@pytest.fixture(scope="module")
+def parts(cloud):
+    split(cloud, cloud.parent / "parts")
+    return cloud.parent / "parts"
+
+
+@pytest.fixture(scope="module")
+def tiled(parts):
+    return wg.tile_clouds(parts, parts.parent / "tiles", **OPTIONS)
+
+
+def test_the_plan_is_of_stored_steps(tiled):
+    plan = tiled.index.plan
+    assert [len(plan.pieces(stage)) for stage in range(3)] == [9, 4, 1]
+    assert TilePlan.from_json(plan.to_json(), "a") == plan
+    assert tiled.figures()["n_files"] == 2
+    assert {row["status"] for row in tiled.index.records.values()} == {"whole"}
+
+
+@pytest.mark.parametrize("stage", [0, 1])
+def test_border_vertices_are_the_same_in_both_tiles_at_every_level(tiled, stage):
+    n_seams = n_shared = 0
+    for levels, others in seams(tiled.index, stage):
+        shared = levels[-1].keys() & others[-1].keys()
+        for mine in levels:
+            assert shared <= mine.keys()
+            for theirs in others:
+                assert mine.keys() & theirs.keys() == shared
+                assert all(mine[place] == theirs[place] for place in shared)
+        n_seams += 1
+        n_shared += len(shared)
+    assert n_seams >= 4
+    assert n_shared > 10 * n_seams
+
+
+def surface_of(cloud):
+    """The lowest used point of each place, and how many places there are."""
+    las = laspy.read(cloud)
+    used = ~np.asarray(las.withheld).astype(bool) & (np.asarray(las.classification) != 7)
+    order = np.argsort(np.asarray(las.Z)[used], kind="stable")
+    places = np.column_stack([las.X, las.Y])[used][order]
+    _, first = np.unique(places, axis=0, return_index=True)
+    return np.asarray(las.z)[used][order][first]
+
+
+def test_the_integral_of_the_whole_is_that_of_the_input_at_every_level(cloud, tiled):
+    heights = surface_of(cloud)
+    n_levels = 0
+    for whole in whole_levels(tiled.index):
+        assert whole.integrals @ whole.vertices[:, 2] == pytest.approx(heights.sum(), rel=1e-12)
+        assert whole.integrals.sum() == pytest.approx(len(heights), rel=1e-12)
+        assert whole.names == ("intensity",)
+        n_levels += 1
+    assert n_levels > 20
+
+
+def test_the_whole_is_one_valid_surface_at_every_level(cloud, tiled):
+    import shapely
+
+    finest = None
+    for level in range(tiled.index.n_levels, -1, -1):
+        mesh = wg.extract_region(tiled.index, level=level).surface.mesh
+        areas = mesh.plan_areas
+        finest = areas.sum() if finest is None else finest
+        assert areas.min() > 0
+        assert areas.sum() == pytest.approx(finest, rel=1e-9)
+        tail, head = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+        directed = tail * mesh.n_vertices + head
+        assert len(np.unique(directed)) == len(directed)  # no edge has two faces on one side
+        if level % 8 == 0:  # no overlap, and no hole but the pond
+            whole = shapely.union_all(shapely.polygons(mesh.vertices[mesh.faces][:, :, :2]))
+            assert whole.area == pytest.approx(finest, rel=1e-9)
+            assert whole.geom_type == "Polygon"
+            assert len(whole.interiors) == 1
+    assert (
+        len(surface_of(cloud))
+        == wg.extract_region(tiled.index, level=tiled.index.n_levels).surface.mesh.n_vertices
+    )
+    hull = wg.open(cloud).mesh.plan_areas.sum()
+    assert 0.98 * hull < finest < hull
+
+
+def test_tiles_are_those_of_one_file(cloud, tiled, tmp_path):
+    one = wg.tile_clouds(cloud, tmp_path / "t", **OPTIONS)
+    a = wg.extract_region(one.index, level=3).surface.mesh
+    b = wg.extract_region(tiled.index, level=3).surface.mesh
+    assert a.n_vertices == pytest.approx(b.n_vertices, rel=0.05)
+    wg.restore_source(one.index, 0, tmp_path / "back.las")
+    assert (tmp_path / "back.las").read_bytes() == cloud.read_bytes()
+
+
+def test_every_file_comes_back(parts, tiled, tmp_path):
+    east, west = sorted(parts.iterdir())
+    assert wg.restore_source(tiled.index, 1, tmp_path / "west.las") > 4000
+    assert (tmp_path / "west.las").read_bytes() == west.read_bytes()
+    wg.restore_source(tiled.index, 0, tmp_path / "east.laz")
+    assert_same_cloud(east, tmp_path / "east.laz")
+
+
+def test_a_tile_by_itself_gives_its_points(cloud, tiled, tmp_path):
+    piece = Piece(0, 1, 1)
+    wg.load(tiled.index.path(piece)).restore(tmp_path / "tile.las")
+    tile, whole = laspy.read(tmp_path / "tile.las"), laspy.read(cloud)
+    records = {
+        (x, y, z, time)
+        for x, y, z, time in zip(whole.X, whole.Y, whole.Z, whole.gps_time, strict=True)
+    }
+    offsets = (tile.header.offsets - whole.header.offsets) / whole.header.scales
+    moved = np.rint(offsets).astype(int)
+    found = zip(tile.X + moved[0], tile.Y + moved[1], tile.Z + moved[2], tile.gps_time, strict=True)
+    assert 900 < len(tile.X) < 2000
+    assert all(record in records for record in found)
+
+
+def test_errors_at_seams_are_no_larger_than_inside(cloud, tiled):
+    finest = wg.extract_region(tiled.index, level=tiled.index.n_levels).surface.mesh.vertices
+    plan = tiled.index.plan
+    mesh = wg.extract_region(tiled.index, level=tiled.index.n_levels - 3).surface.mesh
+    errors = surface_errors(mesh, finest)
+    x, y = plan.local_frame.file_x(finest[:, 0]), plan.local_frame.file_y(finest[:, 1])
+    columns, rows = plan.geometry.cells(x, y)
+    near = np.min([np.abs(rows - end) for end in plan.rows[1:-1]], axis=0) <= 200
+    near |= np.min([np.abs(columns - end) for end in plan.columns[1:-1]], axis=0) <= 200
+    rms = [float(np.sqrt(np.nanmean(errors[mask] ** 2))) for mask in (near, ~near)]
+    assert 0 < rms[0] <= 1.05 * rms[1]
+
+
+def test_a_region_reads_the_tiles_that_it_needs(tiled):
+    box = (500080.0, 5100010.0, 500090.0, 5100020.0)
+    region = wg.extract_region(tiled.index, level=tiled.index.n_levels, bbox=box)
+    assert region.pieces == (Piece(0, 0, 2),)
+    assert 80 < region.surface.mesh.n_vertices < 250
+    assert region.surface.mesh.attribute_names == ("intensity",)
+
+
+def test_processes_give_the_bytes_of_one_and_the_cut_is_gone(parts, tiled, tmp_path):
+    wg.tile_clouds(parts, tmp_path / "t", workers=2, **OPTIONS)
+    assert checksums(tmp_path / "t") == checksums(tiled.index.folder)
+    assert not (tmp_path / "t" / CUT).exists()
+
+
+def test_a_second_start_mends_what_is_damaged(parts, tiled, tmp_path):
+    shutil.copytree(tiled.index.folder, tmp_path / "t")
+    damaged = tmp_path / "t" / "pieces" / "0" / "00001_00001.gpkg"
+    damaged.write_bytes(damaged.read_bytes()[:-100] + bytes(100))
+    (tmp_path / "t" / "pieces" / "0" / "00002_00002.json").unlink()
+    mended = wg.tile_clouds(parts, tmp_path / "t", **OPTIONS)
+    assert (mended.n_made, mended.n_found) == (2, 12)
+    assert checksums(tmp_path / "t") == checksums(tiled.index.folder)
+
+
+def test_workers_and_program_that_are_killed_at_random_cost_what_is_in_flight(
+    parts, tiled, tmp_path
+):
+    pytest.importorskip("psutil")
+    command = [sys.executable, "-m", "wavelet_gis.cli", "tile", parts, tmp_path / "t"]
+    command += ["--tile", 33, "--levels", 4, "--attributes", "intensity"]
+    command += ["--workers", 2, "--quiet"]
+    chance = random.Random(7)
+    n_killed = 0
+    for _ in range(3):  # the program itself is killed twice, the third start ends
+        program = subprocess.Popen(list(map(str, command)))
+        until = time.monotonic() + (chance.uniform(6.0, 9.0) if n_killed < 4 else 1e9)
+        next_kill = 0.0
+        while program.poll() is None and time.monotonic() < until:
+            time.sleep(0.2)
+            if time.monotonic() > next_kill and n_killed < 4:
+                workers = workers_of(program.pid)
+                if workers:
+                    chance.choice(workers).kill()
+                    n_killed += 1
+                    next_kill = time.monotonic() + chance.uniform(2.0, 3.0)
+        if program.poll() is None:
+            program.kill()
+        program.wait()
+    assert n_killed > 0
+    ended = wg.tile_clouds(parts, tmp_path / "t", **OPTIONS)
+    assert ended.failed == []
+    assert checksums(tmp_path / "t") == checksums(tiled.index.folder)
+
+
+def test_a_damaged_file_costs_its_tiles_until_it_is_mended(parts, tiled, tmp_path):
+    shutil.copytree(parts, tmp_path / "parts")
+    east = tmp_path / "parts" / "east.laz"
+    good, times = east.read_bytes(), east.stat()
+    east.write_bytes(good[:-2000] + bytes(2000))
+    os.utime(east, ns=(times.st_atime_ns, times.st_mtime_ns))
+    with pytest.warns(TerrainWarning, match=r"east\.laz: the compressed points cannot be read"):
+        broken = wg.tile_clouds(tmp_path / "parts", tmp_path / "t", **OPTIONS)
+    assert 0 < len(broken.failed) < 9
+    assert wg.extract_region(broken.index, level=2).surface.mesh.n_faces > 0
+    with pytest.raises(InputFileError, match=r"east\.laz was not cut; tile again"):
+        wg.restore_source(broken.index, 0, tmp_path / "east.laz")
+    east.write_bytes(good)
+    os.utime(east, ns=(times.st_atime_ns, times.st_mtime_ns))
+    mended = wg.tile_clouds(tmp_path / "parts", tmp_path / "t", **OPTIONS)
+    assert mended.failed == []
+    wg.restore_source(mended.index, 0, tmp_path / "east.laz")
+    assert_same_cloud(east, tmp_path / "east.laz")
+
+
+def test_points_without_a_surface_come_back_too(tmp_path):
+    """Nine tiles, of which the middle row has a few points on a line, and one tile has none."""
+    path = write_las(tmp_path / "raw.las", 25000)
+    las = laspy.read(path)
+    x, y = np.asarray(las.x) - 500000, np.asarray(las.y) - 5100000
+    row = (y > 30) & (y < 70)
+    keep = ~row
+    lone = np.flatnonzero(row & (x < 30))[:2]
+    keep[lone] = True
+    las.points = las.points[keep]
+    las.write(tmp_path / "a.las")
+    tiled = wg.tile_clouds(tmp_path / "a.las", tmp_path / "t", tile=33, levels=3)
+    status = {piece: row["status"] for piece, row in tiled.index.records.items()}
+    assert status[Piece(0, 1, 0)] == "loose"
+    assert status[Piece(0, 1, 1)] == "empty"
+    wg.restore_source(tiled.index, 0, tmp_path / "back.las")
+    assert (tmp_path / "back.las").read_bytes() == (tmp_path / "a.las").read_bytes()
+    again = wg.tile_clouds(tmp_path / "a.las", tmp_path / "t", tile=33, levels=3)
+    assert again.n_made == 0
+
+
+def test_chosen_classes_alone_come_back(cloud, tmp_path):
+    tiled = wg.tile_clouds(cloud, tmp_path / "t", tile=50, levels=3, classes=(2,))
+    n_points = wg.restore_source(tiled.index, 0, tmp_path / "ground.las")
+    ground, whole = laspy.read(tmp_path / "ground.las"), laspy.read(cloud)
+    chosen = whole.points.array[np.asarray(whole.classification) == 2]
+    assert ground.points.array.tobytes() == chosen.tobytes()
+    assert ground.header.point_count == n_points == len(chosen)
+
+
+def test_one_tile_is_the_plain_pyramid(cloud, tmp_path):
+    tiled = wg.tile_clouds(cloud, tmp_path / "t")
+    assert tiled.index.plan.n_stages == 1
+    plain = wg.analyse(wg.open(cloud))
+    assert tiled.index.n_levels == plain.n_levels
+    a = wg.extract_region(tiled.index).surface.mesh
+    b = plain.geo.pyramid.mesh(0)
+    assert a.n_vertices == b.n_vertices
+    assert np.allclose(np.sort(a.vertices, axis=0), np.sort(b.vertices, axis=0), atol=1e-6)
+
+
+def test_degrees(tmp_path):
+    path = write_las(tmp_path / "d.las", 6000, crs="EPSG:4326", degrees=True)
+    tiled = wg.tile_clouds(path, tmp_path / "t", tile=(0.0005, 0.0005), levels=3)
+    assert len(tiled.index.plan.pieces(0)) == 4
+    p, q = tiled.index.plan.points.ratio
+    assert p / q == pytest.approx(np.cos(np.radians(46)), rel=0.01)
+    mesh = wg.extract_region(tiled.index, level=0).surface.file_mesh
+    assert 11.0 <= mesh.vertices[:, 0].min() < mesh.vertices[:, 0].max() <= 11.001
+    wg.restore_source(tiled.index, 0, tmp_path / "back.las")
+    assert (tmp_path / "back.las").read_bytes() == path.read_bytes()
+
+
+def test_a_header_with_other_bounds_than_its_points_is_told_of(tmp_path):
+    path = write_las(tmp_path / "a.las", 4000)
+    content = bytearray(path.read_bytes())
+    content[179:187] = np.float64(500050.0).tobytes()  # largest x
+    path.write_bytes(content)
+    with pytest.warns(TerrainWarning, match="lie outside of the bounds that the header tells"):
+        tiled = wg.tile_clouds(path, tmp_path / "t", levels=3)
+    assert tiled.failed
+
+
+def test_refusals(cloud, parts, tmp_path):
+    with pytest.raises(OptionError, match="a tile needs some thousand points"):
+        wg.tile_clouds(cloud, tmp_path / "t", tile=10)
+    with pytest.raises(OptionError, match="give a length above 0"):
+        wg.tile_clouds(cloud, tmp_path / "t", tile=-1)
+    with pytest.raises(OptionError, match="heights above the ground"):
+        wg.tile_clouds(cloud, tmp_path / "t", attributes=("hag",))
+    with pytest.raises(OptionError, match="1 to 64 levels"):
+        wg.tile_clouds(cloud, tmp_path / "t", levels=0)
+    other = write_las(tmp_path / "other.las", 500, point_format=7)
+    with pytest.raises(InputFileError, match="other dimensions than those of"):
+        wg.tile_clouds([cloud, other], tmp_path / "t")
+    near = write_las(tmp_path / "near.las", 500)
+    content = bytearray(near.read_bytes())
+    content[155:163] = np.float64(500000.003).tobytes()  # offset of x
+    near.write_bytes(content)
+    with pytest.raises(InputFileError, match="between the steps"):
+        wg.tile_clouds([cloud, near], tmp_path / "t")
+    tiled = wg.tile_clouds(cloud, tmp_path / "t")
+    with pytest.raises(InputFileError, match="not of a raster; use restore_source"):
+        wg.restored_raster(tiled.index)
+    assert source_record(tmp_path, 0) is None
+    assert open_index(tmp_path / "t").plan.points is not None

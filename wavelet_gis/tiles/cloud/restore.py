@@ -1,0 +1,148 @@
+"""The files that tiles of points were made from, written again from the tiles."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_gis.errors import InputFileError, OutputFileError
+from wavelet_gis.io.atomic import new_file
+from wavelet_gis.io.las.cloud_writer import record_array, write_records
+from wavelet_gis.io.las.layout import parse_layout
+from wavelet_gis.model.points.cloud import PointCloud
+from wavelet_gis.tiles.cloud.cut import SOURCES, CutPoints, record_dtype, source_record
+from wavelet_gis.tiles.cloud.tile import FILE, ROW, inputs_of
+from wavelet_gis.tiles.index import TileIndex
+from wavelet_gis.tiles.piece import LOOSE, PIECES, sha256_of
+from wavelet_gis.tiles.plan import Piece
+from wavelet_gis.workflows.reconstruct import reconstruct
+
+__all__ = ["names_of_sources", "restore_source"]
+
+
+def names_of_sources(index: TileIndex) -> list[str]:
+    """Return a name for each input, that of its file; where two have the same, with a number."""
+    names: list[str] = []
+    for file in index.plan.files:
+        stem, suffix = os.path.splitext(os.path.basename(file.path))
+        if stem.lower().endswith(".copc"):
+            stem = stem[:-5]
+        name, k = f"{stem}{suffix}", 2
+        while name in names:
+            name, k = f"{stem}_{k}{suffix}", k + 1
+        names.append(name)
+    return names
+
+
+def restore_source(
+    index: TileIndex, number: int, path: str | os.PathLike[str], *, overwrite: bool = False
+) -> int:
+    """Write one of the inputs again, from the tiles that have its points; return how many.
+
+    Parameters
+    ----------
+    index : TileIndex
+    number : int
+        Of the input in the plan.
+    path : path
+        ``.las`` or ``.laz``. A LAS file comes back byte for byte; of a LAZ file every point, in its
+        place, and all that is around the points.
+    overwrite : bool
+        Whether a file that exists there may be replaced.
+
+    Raises
+    ------
+    InputFileError
+        A tile is missing, or not all of the points are in the tiles.
+    PyramidError
+        A tile's checksum is another.
+    OutputFileError
+        The file cannot be written.
+    """
+    folder = index.folder
+    source = source_record(folder, number)
+    if source is None or source["status"] != "whole":
+        raise InputFileError(
+            f"{folder}: {index.plan.files[number].path} was not cut; tile again with the same "
+            "options, which makes what is missing."
+        )
+    n_points = int(source["n_points"])
+    if n_points == 0:
+        raise InputFileError(
+            f"{folder}: no point of {index.plan.files[number].path} was chosen; there is nothing "
+            "to write."
+        )
+    head = folder / SOURCES / f"{number:05d}.head"
+    tail = (folder / SOURCES / f"{number:05d}.tail").read_bytes()
+    layout = parse_layout(str(head), head.read_bytes())
+    dtype = record_dtype(folder, number)
+    with (
+        new_file(path, overwrite=overwrite) as scratch,
+        tempfile.TemporaryFile(dir=scratch.parent) as room,
+    ):
+        try:
+            room.truncate(n_points * dtype.itemsize)
+        except OSError as error:
+            raise OutputFileError(f"{path}: there is no room for the points ({error}).") from error
+        records: NDArray[Any] = np.memmap(room, dtype, "r+", shape=(n_points,))
+        is_there = np.zeros(n_points, dtype=bool)
+        for part in _parts(index, number, dtype):
+            rows = part.row[part.file == number]
+            if len(rows) and (rows.min() < 0 or rows.max() >= n_points):
+                raise InputFileError(f"{folder}: a tile has points that no input has; tile anew.")
+            of_file = part.records[part.file == number].copy()
+            for axis, shift in zip("XYZ", source["shift"], strict=True):
+                of_file[axis] = of_file[axis].astype(np.int64) - int(shift)
+            records[rows] = of_file
+            is_there[rows] = True
+        if not is_there.all():
+            raise InputFileError(
+                f"{folder}: {np.count_nonzero(~is_there)} points of "
+                f"{index.plan.files[number].path} are in no tile; tile anew."
+            )
+        write_records(
+            scratch,
+            layout,
+            records,
+            tail,
+            source["tail_at"],
+            is_altered=n_points != source["n_in_file"],
+        )
+    return n_points
+
+
+def _parts(index: TileIndex, number: int, dtype: np.dtype[Any]) -> Iterator[CutPoints]:
+    """Yield the points of the tiles that an input has points in."""
+    from wavelet_gis.io.pyramid.pyramid_file import read_input
+
+    for piece in index.plan.pieces(0):
+        if number not in inputs_of(index.plan, piece):
+            continue
+        record = index.records.get(piece, {})
+        status = record.get("status", "missing")
+        if status == "empty":
+            continue
+        if status == "loose":
+            path = index.folder / PIECES / f"{piece.name}{LOOSE}"
+            if not path.is_file() or sha256_of(path) != record["sha256"]:
+                raise _missing(index, piece, "not the file that was made")
+            yield CutPoints.from_bytes(path.read_bytes(), dtype)
+            continue
+        if status != "whole":
+            raise _missing(index, piece, status)
+        cloud = reconstruct(read_input(index.path(piece))).original
+        assert isinstance(cloud, PointCloud)
+        yield CutPoints(record_array(cloud), cloud.carried[FILE], cloud.carried[ROW])
+
+
+def _missing(index: TileIndex, piece: Piece, what: str) -> InputFileError:
+    return InputFileError(
+        f"{Path(index.folder)}: the tile in row {piece.row}, column {piece.column} is {what}; "
+        "tile again with the same options, which makes what is missing."
+    )
