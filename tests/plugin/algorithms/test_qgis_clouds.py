@@ -149,3 +149,127 @@ class TestWithoutLazrs:
         without_lazrs.unlink()
         assert dependencies.LAZRS in needed("a.laz")
         assert dependencies.LAZRS not in needed("a.las")
+
+
+def test_zones_are_those_of_a_point_cloud_too(run, cloud):
+    from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
+
+    zones = QgsVectorLayer("Polygon?crs=EPSG:2154&field=limit:double", "zones", "memory")
+    feature = QgsFeature(zones.fields())
+    feature.setGeometry(
+        QgsGeometry.fromWkt("Polygon ((0 0, 700500 0, 700500 6700000, 0 6700000, 0 0))")
+    )
+    feature.setAttributes([0.05])
+    zones.dataProvider().addFeatures([feature])
+    log = Log()
+    parameters = {"INPUT": cloud, "ZONES": zones, "ZONE_FIELD": "limit", "MAX_ERROR": 5.0}
+    made = run("simplifypointcloud", {**parameters, "TIN": "memory:"}, log)
+    assert made["N_VERTICES"] < made["N_INPUT_VERTICES"]
+    assert any(line.startswith("Within 0.05: ") for line in log.lines), log.lines
+
+
+class TestLayers:
+    """A point cloud layer of the project; a real one is COPC, which QGIS reads without PDAL."""
+
+    @pytest.fixture
+    def project(self, qgis):
+        from qgis.core import QgsProject
+
+        yield QgsProject.instance()
+        QgsProject.instance().clear()
+
+    @pytest.fixture
+    def layer(self, project, data_folder):
+        from qgis.core import QgsPointCloudLayer
+
+        path = data_folder / "nasty" / "simple_with_page.copc.laz"
+        if not path.is_file():
+            pytest.skip("no COPC file at hand")
+        pytest.importorskip("lazrs")
+        layer = QgsPointCloudLayer(str(path), "lone star", "copc")
+        assert layer.isValid()
+        project.addMapLayer(layer)
+        return layer
+
+    def run_with(self, run, project, name, parameters):
+        from qgis.core import QgsProcessingContext
+
+        context, log = QgsProcessingContext(), Log()
+        context.setProject(project)
+        return run(name, parameters, log, context), log
+
+    def test_a_layer_is_read_from_its_file(self, run, project, layer):
+        parameters = {"VERTICES": 100, "REFINE": 0, "TIN": "memory:"}
+        by_file = run("simplifypointcloud", {"INPUT": layer.source(), **parameters})
+        for named in (layer.id(), layer.name()):
+            made, _ = self.run_with(
+                run, project, "simplifypointcloud", {"INPUT": named, **parameters}
+            )
+            assert made["RMSE_SURFACE"] == by_file["RMSE_SURFACE"]
+            assert made["TIN"].crs() == by_file["TIN"].crs()
+
+    def test_the_filter_of_a_layer_counts(self, run, project, layer):
+        with laspy.open(layer.source()) as file:
+            classes = np.array(file.read().classification)
+        kept = int(classes[0])
+        layer.setSubsetString(f"Classification = {kept}")
+        made, log = self.run_with(
+            run,
+            project,
+            "simplifypointcloud",
+            {"INPUT": layer.id(), "VERTICES": 100, "REFINE": 0, "TIN": "memory:"},
+        )
+        assert 0 < made["N_INPUT_VERTICES"] <= (classes == kept).sum()
+        assert f"The filter of the layer lone star leaves: {kept}" in log.lines
+
+    def test_a_filter_by_something_else_is_refused(self, provider, project, layer):
+        from qgis.core import QgsProcessingContext
+
+        layer.setSubsetString("Intensity > 10")
+        context = QgsProcessingContext()
+        context.setProject(project)
+        is_fine, why = provider.algorithm("simplifypointcloud").checkParameterValues(
+            {"INPUT": layer.id(), "TIN": "memory:"}, context
+        )
+        assert not is_fine
+        assert "filter by Classification alone" in why
+
+    def test_the_file_of_a_layer_is_among_those_that_no_result_replaces(
+        self, provider, project, layer
+    ):
+        from qgis.core import QgsProcessingContext
+        from terrain_wavelets.plugin.parameters.output_check import _input_files
+
+        context = QgsProcessingContext()
+        context.setProject(project)
+        algorithm = provider.algorithm("thinpointcloud").create()
+        assert layer.source() in _input_files(algorithm, {"INPUT": layer.name()}, context)
+
+    def test_the_dialog_lists_the_layers_of_the_project(self, provider, project, layer):
+        from processing.gui.AlgorithmDialog import AlgorithmDialog
+
+        layer.setSubsetString("Classification = 2")
+        dialog = AlgorithmDialog(provider.algorithm("thinpointcloud").create(), False, None)
+        combo = dialog.mainWidget().wrappers["INPUT"].choice.combo
+        assert [combo.itemText(k) for k in range(combo.count())] == [
+            "lone star [Classification = 2]"
+        ]
+        assert dialog.mainWidget().wrappers["INPUT"].parameterValue() == layer.id()
+
+
+@pytest.mark.parametrize(
+    ("subset", "classes"),
+    [
+        ("Classification = 2", (2,)),
+        ("Classification = 2 OR Classification IN (6, 9)", (2, 6, 9)),
+        ("NOT (Classification > 1)", (0, 1)),
+        ("Classification = 300", ()),
+        ("Intensity > 3", None),
+        ("Classification = 2 AND ReturnNumber = 1", None),
+        ("Classification = ", None),
+    ],
+)
+def test_the_classes_of_a_filter(qgis, subset, classes):
+    from terrain_wavelets.plugin.algorithms._cloud_source import classes_of
+
+    assert classes_of(subset) == classes

@@ -24,7 +24,7 @@ def dialog_of(provider, name):
 
 
 def listed(dialog):
-    combo = dialog.mainWidget().wrappers["INPUT"]._choice.combo
+    combo = dialog.mainWidget().wrappers["INPUT"].choice.combo
     return {combo.itemData(k): combo.itemText(k) for k in range(combo.count())}
 
 
@@ -64,18 +64,18 @@ class TestTheList:
         run("analysedem", {"INPUT": dem, "LEVELS": 3, "OUTPUT": path})
         dialog = dialog_of(provider, "extractlevel")
         wrapper = dialog.mainWidget().wrappers["INPUT"]
-        wrapper._choice.combo.setEditText("nothing here.gpkg")
+        wrapper.choice.combo.setEditText("nothing here.gpkg")
         assert wrapper.parameterValue() == "nothing here.gpkg"
-        assert wrapper._choice.table.isHidden()
-        wrapper._choice.combo.setEditText(path)
+        assert wrapper.choice.table.isHidden()
+        wrapper.choice.combo.setEditText(path)
         assert wrapper.parameterValue() == path
-        assert wrapper._choice.table.rowCount() == 4
+        assert wrapper.choice.table.rowCount() == 4
 
     def test_the_table_has_the_levels_and_a_click_takes_one(self, provider, run, dem):
         made = run("analysedem", {"INPUT": dem, "LEVELS": 3, "OUTPUT": "TEMPORARY_OUTPUT"})
         dialog = dialog_of(provider, "extractlevel")
         wrappers = dialog.mainWidget().wrappers
-        table = wrappers["INPUT"]._choice.table
+        table = wrappers["INPUT"].choice.table
         rows = [[table.item(r, c).text() for c in range(4)] for r in range(table.rowCount())]
         assert [row[0] for row in rows] == ["0", "1", "2", "3"]
         assert rows[0][1:] == [

@@ -191,3 +191,25 @@ def test_the_mesh_quality_is_a_table(run, made):
     assert rows[1]["longest_edge"] == pytest.approx(10 * 2**0.5)
     assert found["SMALLEST_ANGLE"] == pytest.approx(min(row["smallest_angle"] for row in rows))
     assert not found["OUTPUT"].isSpatial()
+
+
+def test_terrain_for_the_web_is_a_set_of_tiles(run, made, tmp_path):
+    pytest.importorskip("pyproj")
+    folder = tmp_path / "tiles"
+    parameters = {"INPUT": str(made / "p.gpkg"), "MAX_ERROR": 2.0, "OUTPUT": str(folder)}
+    for _ in range(2):  # the second replaces the first
+        found = run("webterrain", parameters)
+        tiles = list(folder.rglob("*.terrain"))
+        assert len(tiles) == found["N_TILES"] > 2
+        assert (folder / "layer.json").is_file()
+        assert found["MAX_ERROR_FINEST"] <= 2.0
+    temporary = run("webterrain", {**parameters, "OUTPUT": "TEMPORARY_OUTPUT"})
+    assert (Path(temporary["OUTPUT"]) / "layer.json").is_file()
+
+
+def test_a_folder_of_something_else_is_not_replaced(refused, made, tmp_path):
+    pytest.importorskip("pyproj")
+    (tmp_path / "notes.txt").write_text("mine")
+    told = refused("webterrain", {"INPUT": str(made / "p.gpkg"), "OUTPUT": str(tmp_path)})
+    assert "layer.json" in told or "tile set" in told
+    assert (tmp_path / "notes.txt").read_text() == "mine"

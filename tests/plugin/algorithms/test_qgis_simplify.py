@@ -1,5 +1,7 @@
 """A DEM to a TIN of fewer vertices, in a real QGIS."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from qgis_layers import Log, hills, numbers, read_raster, write_raster
@@ -181,3 +183,52 @@ def test_a_ugrid_mesh_opens_as_a_mesh_layer_with_its_crs(run, tmp_path):
     heights = layer.datasetGroupMetadata(QgsMeshDatasetIndex(0))
     values = numbers(dem)
     assert values.min() - 5 < heights.minimum() < heights.maximum() < values.max() + 5
+
+
+class TestSolverMesh:
+    @pytest.fixture
+    def dem(self, tmp_path):
+        return write_raster(tmp_path / "dem.tif", hills(40, 50).astype("float32"))
+
+    def test_without_the_package_it_says_which_and_how(self, run, dem, monkeypatch):
+        from terrain_wavelets.plugin.ui import dependencies
+
+        found = dependencies.missing
+        monkeypatch.setattr(
+            dependencies,
+            "missing",
+            lambda packages: (
+                found(p for p in packages if p.module != "CGAL")
+                + [p for p in packages if p.module == "CGAL"]
+            ),
+        )
+        from qgis.core import QgsProcessingException
+
+        log = Log()
+        with pytest.raises(QgsProcessingException):
+            run("simplifydem", {"INPUT": dem, "MIN_ANGLE": 20.0, "TIN": "memory:"}, log)
+        (told,) = [line for line in log.errors if "CGAL" in line]
+        assert told.startswith("missing Python package")
+        assert "cgal" in told.split("Install it")[1]
+
+    def test_bounds_that_no_mesh_can_keep_are_refused_at_once(self, provider, dem):
+        from qgis.core import QgsProcessingContext
+
+        algorithm = provider.algorithm("simplifydem")
+        parameters = {"INPUT": dem, "TIN": "memory:", "LONGEST_EDGE": 30.0, "SHORTEST_EDGE": 20.0}
+        is_fine, why = algorithm.checkParameterValues(parameters, QgsProcessingContext())
+        assert not is_fine
+        assert "'Shortest edge for a solver' is more than half of 'Longest edge" in why
+
+    def test_the_bounds_hold(self, run, dem):
+        pytest.importorskip("CGAL")
+        pytest.importorskip("shapely")
+        log = Log()
+        parameters = {"INPUT": dem, "VERTICES": 100, "MIN_ANGLE": 25.0, "LONGEST_EDGE": 60.0}
+        made = run("simplifydem", {**parameters, "TIN": "memory:"}, log)
+        assert made["N_VERTICES"] > 100
+        for feature in made["TIN"].getFeatures():
+            corners = [(v.x(), v.y()) for v in feature.geometry().vertices()][:3]
+            sides = [np.hypot(a[0] - b[0], a[1] - b[1]) for a, b in combinations(corners, 2)]
+            assert max(sides) <= 60.0 + 1e-6
+        assert any(line.startswith("Angles ") for line in log.lines)

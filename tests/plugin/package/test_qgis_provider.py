@@ -20,6 +20,7 @@ IDS = {
     "qualityreport",
     "reconstruct",
     "simplifydem",
+    "webterrain",
 }
 
 
