@@ -2,7 +2,7 @@
 
     python benchmarks/cost/history.py                    measure this tree, add it to history.json
     python benchmarks/cost/history.py --tree OTHER_TREE  measure another checkout
-    python benchmarks/cost/history.py --picture          draw docs/images/history.png from the results
+    python benchmarks/cost/history.py --picture          draw docs/images/history.png
 
 Seconds are of the processor, all threads together; the fixed work (sorting, gathering and summing
 five million doubles with numpy) runs before and after, and figures are multiples of it, so that a
@@ -25,7 +25,7 @@ RESULTS = Path(__file__).resolve().parent / "history.json"
 PICTURE = ROOT / "docs" / "images" / "history.png"
 
 WORK = r"""
-import json, os, sys, tempfile, time, warnings
+import json, sys, time, warnings
 warnings.simplefilter("ignore")
 import numpy as np
 import wavelet_core as wc
@@ -43,7 +43,7 @@ def fixed():
     np.add.reduceat(np.sort(values)[places], np.arange(0, 5_000_000, 7))
     return time.process_time() - began
 
-mesh, small, tiny = hills(500), hills(200), hills(40)
+mesh, small, middle = hills(500), hills(200), hills(110)
 WORKS = {
     "analyse, to 10 %": lambda m: wc.analyse(m, target_vertices=m.n_vertices // 10),
     "analyse, GLMN, 12 levels": lambda m: wc.analyse(m, prediction="GLMN", levels=12),
@@ -58,12 +58,10 @@ figures, kernel = {}, [fixed()]
 for name, work in WORKS.items():
     full = small if name == "denoise" else mesh
     try:
-        for m in (tiny, full):
+        for m in (middle, full):
             if name in ("synthesis", "refine at 10 %") and m.n_vertices not in PYRAMIDS:
                 PYRAMIDS[m.n_vertices] = wc.analyse(m, target_vertices=m.n_vertices // 10)
-        work(tiny)
-        if os.environ.get("TERRAIN_WAVELETS_ENGINE") != "arrays":
-            work(hills(110))  # above what the array engine takes while nothing is compiled
+        work(middle)  # compiled
         began = time.process_time()
         work(full)
         figures[name] = time.process_time() - began
@@ -71,7 +69,8 @@ for name, work in WORKS.items():
         print(f"{name}: {type(error).__name__}: {error}", file=sys.stderr)
     kernel.append(fixed())
 reference = min(kernel)
-print(json.dumps({"reference": reference, "ratios": {k: v / reference for k, v in figures.items()}}))
+ratios = {name: seconds / reference for name, seconds in figures.items()}
+print(json.dumps({"reference": reference, "ratios": ratios}))
 """
 
 
@@ -124,7 +123,7 @@ def main() -> None:
     """Measure or draw."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tree", type=Path, default=ROOT, help="a checkout, by default this one")
-    parser.add_argument("--picture", action="store_true", help="draw the picture and measure nothing")
+    parser.add_argument("--picture", action="store_true", help="draw; measure nothing")
     arguments = parser.parse_args()
     if arguments.picture:
         draw()
