@@ -127,7 +127,7 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
                     write_pyramid_file(scratch, geo, "none")
                 record |= {"status": "whole", **_figures(geo), "sha256": sha256_of(place)}
                 record["n_bytes"] = place.stat().st_size
-    except WaveletError as error:
+    except (WaveletError, OSError) as error:  # a full disk, of whatever kind
         record |= {"status": "failed", "reason": " ".join(str(error).split())}
     record["seconds"] = round(perf_counter() - began, 3)
     with new_file(place.with_suffix(".json"), overwrite=True) as scratch:

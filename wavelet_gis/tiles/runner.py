@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from importlib.util import find_spec
+from itertools import islice
 from multiprocessing import get_context
 from typing import Any
 
@@ -26,6 +27,9 @@ Job = tuple[Callable[..., dict[str, Any]], tuple[Any, ...]]
 
 #: Tasks that a scheduler is given at once; some 50,000 alive are known to stall one.
 _WAVE = 10_000
+
+#: Jobs that processes are given at once, each, so that none waits for the next.
+_AHEAD = 4
 
 #: Times that all workers may be lost without a piece being made in between.
 _MOST_LOSSES = 5
@@ -73,7 +77,7 @@ def require_dask() -> None:
 
 
 def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]:
-    left = list(jobs)
+    left = dict(enumerate(jobs))
     n_losses = 0
     while left:
         n_before = len(left)
@@ -81,11 +85,18 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
             min(workers, len(left)), mp_context=get_context("spawn"), initializer=_leave_interrupts
         )
         try:
-            futures = {pool.submit(job[0], *job[1]): job for job in left}
-            for future in as_completed(futures):
-                record = future.result()
-                left.remove(futures[future])
-                yield record
+            waiting = iter(list(left))
+            in_flight: dict[Future[dict[str, Any]], int] = {}
+            while True:
+                for number in islice(waiting, _AHEAD * workers - len(in_flight)):
+                    function, arguments = left[number]
+                    in_flight[pool.submit(function, *arguments)] = number
+                if not in_flight:
+                    break
+                for future in wait(in_flight, return_when=FIRST_COMPLETED).done:
+                    record = future.result()
+                    del left[in_flight.pop(future)]
+                    yield record
         except BrokenProcessPool as error:
             n_losses = n_losses + 1 if len(left) == n_before else 0
             if n_losses == _MOST_LOSSES:

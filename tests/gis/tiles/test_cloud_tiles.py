@@ -17,7 +17,7 @@ from gis.tiles.test_tiles import checksums, seams, whole_levels, workers_of
 import wavelet_gis as wg
 from wavelet_core.errors import OptionError
 from wavelet_core.metrics import surface_errors
-from wavelet_gis.errors import InputFileError, TerrainWarning
+from wavelet_gis.errors import InputFileError, OutputFileError, TerrainWarning
 from wavelet_gis.tiles.cloud.cut import CUT, source_record
 from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.plan import Piece, TilePlan
@@ -235,6 +235,33 @@ def test_workers_and_program_that_are_killed_at_random_cost_what_is_in_flight(
     ended = wg.tile_clouds(parts, tmp_path / "t", **OPTIONS)
     assert ended.failed == []
     assert checksums(tmp_path / "t") == checksums(tiled.index.folder)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+def test_a_disk_that_fills_up_costs_what_does_not_fit(tmp_path):
+    from cli.test_full_disk import files_limited_to
+
+    (tmp_path / "in").mkdir()
+    las = laspy.read(write_las(tmp_path / "raw.las", 6000))
+    for k in range(9):  # so many that a file's cut is smaller than a tile
+        part = laspy.LasData(copy.deepcopy(las.header), las.points[k::9].copy())
+        part.write(tmp_path / "in" / f"{k}.las")
+    options = {"tile": 50, "levels": 3}
+    good = wg.tile_clouds(tmp_path / "in", tmp_path / "good", **options)
+    failed = []
+    for n_bytes in (25_000, 45_000):  # no room for a cut; for a tile
+        with files_limited_to(n_bytes), pytest.raises(OutputFileError, match="the index cannot be"):
+            wg.tile_clouds(tmp_path / "in", tmp_path / "t", **options)
+        records = open_index(tmp_path / "t").records
+        failed.append(sorted(p.stage for p in records if records[p]["status"] == "failed"))
+        assert not list((tmp_path / "t").rglob(".terrain*"))
+    with files_limited_to(100_000), pytest.warns(TerrainWarning, match="set aside"):
+        broken = wg.tile_clouds(tmp_path / "in", tmp_path / "t", **options)
+    failed.append([record["stage"] for record in broken.failed])
+    assert failed == [[0] * 4, [0] * 4, [1]]
+    ended = wg.tile_clouds(tmp_path / "in", tmp_path / "t", **options)
+    assert (ended.failed, ended.n_made) == ([], 1)
+    assert checksums(tmp_path / "t") == checksums(good.index.folder)
 
 
 def test_a_damaged_file_costs_its_tiles_until_it_is_mended(parts, tiled, tmp_path):
