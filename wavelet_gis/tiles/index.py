@@ -74,6 +74,12 @@ class TileIndex:
             stage += 1
         return stage, below
 
+    def level_of(self, piece: Piece, level: int) -> int:
+        """Return the level of the whole that a level of a piece is."""
+        coarser = sum(self.levels_of(k) for k in range(piece.stage + 1, self.plan.n_stages))
+        n_levels = int(self.records[piece]["n_levels"])
+        return coarser + self.levels_of(piece.stage) - (n_levels - level)
+
 
 def is_index(path: str | os.PathLike[str]) -> bool:
     """Return whether a file is the index of a tile set."""

@@ -220,7 +220,7 @@ def join(
     # A cell that several pieces have was given the integral 1 in each, and counts once.
     counted = np.bincount(place, np.concatenate(integrals)) - (np.bincount(place) - 1.0)
     rows, columns = np.divmod(unique, plan.shape[1])
-    x, y = plan.geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
+    x, y = plan.places(rows, columns)
     frame = plan.local_frame
     vertices = np.column_stack([frame.local_x(x), frame.local_y(y), signal[first, 0]])
     return Joined(vertices, faces, unique, counted, signal[first, 1:], meshes[0].attribute_names)

@@ -156,6 +156,19 @@ class TilePlan:
         """The grid of all cells."""
         return GridGeometry(self.shape, self.transform)  # type: ignore[arg-type]
 
+    def places(self, rows: np.ndarray, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return x and y of cells; those of points to the bit as the cloud has them.
+
+        A face of three points on one line may be so thin by rounding alone that other rounding
+        turns it over.
+        """
+        if self.points is None:
+            return self.geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
+        (first_row, first_column), scales = self.points.first, self.points.scales
+        x = (columns + first_column) * scales[0] + self.points.offsets[0]
+        y = (rows + first_row) * scales[1] + self.points.offsets[1]
+        return x, y
+
     @property
     def coordinate_system(self) -> CoordinateSystem:
         """The CRS of all."""

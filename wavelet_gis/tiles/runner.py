@@ -7,13 +7,15 @@ inputs, and so is one that was half done: its files are written aside.
 
 from __future__ import annotations
 
+import os
 import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from importlib.util import find_spec
 from itertools import islice
-from multiprocessing import get_context
+from multiprocessing import get_context, parent_process
 from typing import Any
 
 from wavelet_core.errors import MissingDependencyError
@@ -82,7 +84,7 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
     while left:
         n_before = len(left)
         pool = ProcessPoolExecutor(
-            min(workers, len(left)), mp_context=get_context("spawn"), initializer=_leave_interrupts
+            min(workers, len(left)), mp_context=get_context("spawn"), initializer=_as_a_worker
         )
         try:
             waiting = iter(list(left))
@@ -108,9 +110,18 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
             pool.shutdown(cancel_futures=True)
 
 
-def _leave_interrupts() -> None:
-    """Leave Ctrl-C to the program, which lets the pieces in flight be finished."""
+def _as_a_worker() -> None:
+    """Leave Ctrl-C to the program, which lets the pieces in flight be finished; end with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_the_program, daemon=True).start()
+
+
+def _end_with_the_program() -> None:
+    """End once the program has: one that is killed tells its workers nothing, and they wait."""
+    program = parent_process()
+    if program is not None:
+        program.join()
+        os._exit(1)
 
 
 def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:

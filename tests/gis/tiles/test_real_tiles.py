@@ -23,7 +23,9 @@ def files(data_folder):
 @pytest.fixture(scope="module")
 def tiled(files, tmp_path_factory):
     folder = tmp_path_factory.mktemp("ign") / "tiles"
-    return wg.tile_clouds(files, folder, tile=50, workers=2)
+    made = wg.tile_clouds(files, folder, tile=50, workers=2)
+    assert made.failed == []
+    return made
 
 
 def test_border_vertices_are_identical(tiled):
