@@ -80,6 +80,24 @@ def test_layers_in_proportion_tell_what_they_leave_out(done, tif, tmp_path, monk
     assert "--layers all" in said.out
 
 
+@pytest.mark.parametrize("n_details", [2000, 0])
+def test_a_large_coarse_tin_is_no_layer_unless_asked_for(
+    done, tif, tmp_path, monkeypatch, n_details
+):
+    monkeypatch.setattr("wavelet_gis.products.layers.MOST_FEATURES", n_details)
+    monkeypatch.setattr("wavelet_gis.products.layers.MOST_COARSE_FEATURES", 500)
+    said = done("analyse", tif, tmp_path / "a.gpkg", "--target-vertices", 300)
+    assert "the coarse TIN" in said.out
+    assert "--layers coarse" in said.out
+    done("analyse", tif, tmp_path / "b.gpkg", "--target-vertices", 300, "--layers", "coarse")
+    kinds = [dict(pyogrio.list_layers(tmp_path / f"{name}.gpkg")) for name in "ab"]
+    assert "coarse_tin" not in kinds[0]
+    assert ("detail_level_00" in kinds[0]) == (n_details > 0)
+    assert "coarse_tin" in kinds[1]
+    done("extract", tmp_path / "a.gpkg", tmp_path / "tin.gpkg", "--level", 0)
+    done("reconstruct", tmp_path / "a.gpkg", tmp_path / "a.tif")
+
+
 def test_errors_may_be_left_out(done, tif, tmp_path):
     done("analyse", tif, tmp_path / "a.gpkg", "--no-errors", "--levels", 2)
     table = done("info", tmp_path / "a.gpkg").out.splitlines()[-3:]

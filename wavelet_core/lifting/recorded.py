@@ -45,6 +45,9 @@ __all__ = [
 #: A part begins at the first level with no more than this share of the vertices that the part
 #: before begins with: it takes some 130 bits a vertex of its own, so one or two for each of all.
 PART_SHARE = 1 / 64
+#: The coarsest level is a part of its own, without steps, with no more than this share: what the
+#: default rule leaves of terrain, 2 to 3 %, is had without working through all that lies above.
+COARSEST_SHARE = 1 / 32
 #: Pyramids of fewer vertices are in one part: they are read in a few seconds.
 LEAST_IN_PARTS = 3_000_000
 #: No part begins with fewer.
@@ -140,7 +143,8 @@ class Recorder:
         self._writer, self._begun = Writer(), dict[str, Any]()
         self._size = mesh.n_vertices
         self._level: RecordedLevel | None = None
-        self._next: dict[str, Any] | None = None  # a part that begins if another step follows
+        self._next: dict[str, Any] | None = None  # a part that begins at the present level
+        self._here: SurfaceLevel | None = None
         self._n_asked = 0
         self._failed = False
 
@@ -165,8 +169,18 @@ class Recorder:
             self._failed = len(step.odd) != self._n_asked  # the link condition forbade some
         else:
             self._failed = not takes(self._level, self._writer, step, self._frame.weights)
-        if _begins_part(level.n_vertices, self._size, self._mesh.n_vertices, self._manner):
-            self._next = _begin(level, level.ids, _columns(self._mesh), self._locked, self._manner)
+        self._here = level
+        if self._begins_part(PART_SHARE):
+            self._begin_next(level)
+
+    def _begins_part(self, share: float) -> bool:
+        if self._here is None:
+            return False
+        n_vertices, n_input = self._here.n_vertices, self._mesh.n_vertices
+        return _begins_part(n_vertices, self._size, n_input, self._manner, share)
+
+    def _begin_next(self, level: SurfaceLevel) -> None:
+        self._next = _begin(level, level.ids, _columns(self._mesh), self._locked, self._manner)
 
     def _begin_part(self, begun: dict[str, Any]) -> None:
         self._parts.append(RecordPart(self._writer.answers(), **self._begun))
@@ -179,6 +193,12 @@ class Recorder:
         """Return the record of a pyramid whose steps were kept; None where none tells it."""
         if self._failed or not steps:
             return None
+        if self._next is None and self._here is not None and self._begins_part(COARSEST_SHARE):
+            self._begin_next(self._here)
+        if self._next is not None:
+            self._begin_part(self._next)
+            self._next = None
+        self._here = None
         parts = (*self._parts, RecordPart(self._writer.answers(), **self._begun))
         return Told(Record(self._frame, parts), steps, coarse, _digest(_columns(self._mesh)))
 
@@ -466,19 +486,20 @@ def _part_bounds(pyramid: Pyramid, manner: Manner) -> tuple[int, ...]:
     """Return the levels at which parts begin, the finest first."""
     bounds = [pyramid.n_levels]
     n_input = size = pyramid.n_vertices(pyramid.n_levels)
-    for level in range(pyramid.n_levels - 1, 0, -1):
+    for level in range(pyramid.n_levels - 1, -1, -1):
         n_vertices = pyramid.n_vertices(level)
-        if _begins_part(n_vertices, size, n_input, manner):
+        share = PART_SHARE if level > 0 else COARSEST_SHARE
+        if _begins_part(n_vertices, size, n_input, manner, share):
             bounds.append(level)
             size = n_vertices
     return tuple(bounds)
 
 
-def _begins_part(n_vertices: int, size: int, n_input: int, manner: Manner) -> bool:
+def _begins_part(n_vertices: int, size: int, n_input: int, manner: Manner, share: float) -> bool:
     """Whether a part begins at a level, the one before having begun with ``size`` vertices."""
     if n_input < LEAST_IN_PARTS or manner.outline_tolerance:
         return False  # a tolerance is measured from the outline of the input
-    return LEAST_IN_PART <= n_vertices <= size * PART_SHARE
+    return LEAST_IN_PART <= n_vertices <= size * share
 
 
 def _digest(columns: FloatArray) -> bytes:

@@ -70,14 +70,15 @@ def test_every_pyramid_of_the_default_design_is_told(name, options):
         assert told(pyramid, mesh)[1] == pyramid
 
 
-@pytest.mark.parametrize("parts", ["one part", "parts"])
+@pytest.mark.parametrize("parts", ["one part", "parts", "coarsest"])
 @pytest.mark.parametrize("options", list(OPTIONS))
 @pytest.mark.parametrize("name", list(MESHES))
 def test_an_analysis_takes_the_record_that_a_second_walk_does(name, options, parts, monkeypatch):
-    if parts == "parts":
+    if parts != "one part":
         monkeypatch.setattr(recorded, "LEAST_IN_PARTS", 100)
-        monkeypatch.setattr(recorded, "LEAST_IN_PART", 40)
-        monkeypatch.setattr(recorded, "PART_SHARE", 0.6)
+        monkeypatch.setattr(recorded, "LEAST_IN_PART", 40 if parts == "parts" else 1)
+        monkeypatch.setattr(recorded, "PART_SHARE", 0.6 if parts == "parts" else 0.0)
+        monkeypatch.setattr(recorded, "COARSEST_SHARE", 0.9)
     mesh = MESHES[name]
     pyramid = analyse(mesh, record=True, **OPTIONS[options])
     assert pyramid == analyse(mesh, **OPTIONS[options])

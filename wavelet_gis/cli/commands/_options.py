@@ -413,8 +413,8 @@ def add_layers_argument(parser: argparse.ArgumentParser, default: str | None = "
         choices=("auto", "all", "coarse", "none"),
         default=default,
         help="vector layers to write beside the pyramid, which is complete without them: the "
-        "coarse TIN and the details of the coarser levels, up to 100,000 features (auto, the "
-        "default), those of all levels, the coarse TIN only, or none",
+        "coarse TIN, up to 50,000 vertices, and the details of the coarser levels, up to 80,000 "
+        "features (auto, the default), those of all levels, the coarse TIN only, or none",
     )
 
 
