@@ -13,6 +13,7 @@ from wavelet_core.errors import OptionError
 from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_text
+from wavelet_gis.io.scratch import sweep_own
 from wavelet_gis.notes import warn
 from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, told
 from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
@@ -286,6 +287,9 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
             shutil.rmtree(folder / name, ignore_errors=True)
         (folder / INDEX).unlink(missing_ok=True)
     folder.mkdir(exist_ok=True)
+    stages = [f"{PIECES}/{stage}" for stage in range(plan.n_stages)]
+    for name in (CUT, SOURCES, *stages):  # what a killed run had begun
+        sweep_own(folder / name)
     if not (folder / PLAN).is_file() or (folder / PLAN).read_text("utf-8") != text:
         with new_file(folder / PLAN, overwrite=True) as scratch:
             write_text(scratch, text)
