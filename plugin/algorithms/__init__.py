@@ -20,6 +20,7 @@ from .shape_of_level import ShapeOfLevel
 from .simplify_dem import SimplifyDem
 from .simplify_point_cloud import SimplifyPointCloud
 from .thin_point_cloud import ThinPointCloud
+from .web_terrain import WebTerrain
 
 #: In the order of the toolbox's groups.
 ALGORITHMS = (
@@ -31,6 +32,7 @@ ALGORITHMS = (
     ThinPointCloud,
     ExtractLevel,
     Reconstruct,
+    WebTerrain,
     Contours,
     Profile,
     ShapeOfLevel,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, ClassVar
 
 from qgis.core import (
@@ -27,7 +26,9 @@ from ..parameters.request import Request
 from ..ui import dependencies
 from ..ui.enums import REAL_NUMBER
 from ..ui.exceptions import QgsProcessingException
+from ..ui.file_metadata import file_widget
 from ..ui.translation import tr
+from ._cloud_source import CloudSource, cloud_source
 
 if TYPE_CHECKING:
     from wavelet_gis.crs.frame import Georeference
@@ -41,8 +42,14 @@ if TYPE_CHECKING:
 ATTRIBUTES = ("classification", "hag", "intensity", "rgb", "return_number", "number_of_returns")
 
 
+#: Classes that the log names one by one.
+MOST_TOLD = 12
+
+
 class CloudInput(TerrainWaveletsAlgorithm):
-    """Base of the algorithms that start from a LAS, LAZ or COPC file."""
+    """Base of the algorithms that start from a LAS, LAZ or COPC file, or a layer of one."""
+
+    source: CloudSource
 
     PAGE = "point-clouds"
     #: Whether the points of the ground alone are taken where no classes are named and it has some.
@@ -50,13 +57,16 @@ class CloudInput(TerrainWaveletsAlgorithm):
 
     def add_cloud_parameters(self) -> None:
         """Declare INPUT and what is taken of it."""
+        parameter = QgsProcessingParameterFile("INPUT", tr("Point cloud"))
+        parameter.setFileFilter("")  # with one, QGIS refuses the names of layers
+        parameter.setMetadata(file_widget("CloudWrapper"))
         self.add(
-            QgsProcessingParameterFile(
-                "INPUT",
-                tr("Point cloud file"),
-                fileFilter=tr("LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)"),
+            parameter,
+            tr(
+                "A file, or a point cloud layer of the project, by its name or id: its filter by "
+                "class and its CRS count. Read by the plugin itself, so no point cloud support in "
+                "QGIS is needed."
             ),
-            tr("Read by the plugin itself, so no point cloud support in QGIS is needed."),
         )
         self.add(
             QgsProcessingParameterEnum(
@@ -145,9 +155,9 @@ class CloudInput(TerrainWaveletsAlgorithm):
 
     def refusal(self, request: Request) -> str | None:
         """Refuse a file that is not there, and classes or weights that are no numbers."""
-        path = request.input_file("INPUT")
-        if not os.path.isfile(path):
-            return tr("{}: there is no such file; choose a LAS or LAZ file.").format(path)
+        fault = cloud_source(request, "INPUT").fault
+        if fault is not None:
+            return fault
         try:
             request.whole_numbers("CLASSES")
         except ValueError:
@@ -162,7 +172,10 @@ class CloudInput(TerrainWaveletsAlgorithm):
         return dependencies.for_las("" if unpacker(path) else path)
 
     def take_layers(self, request: Request) -> None:
-        """Take nothing: a file lives in no thread."""
+        """Take from a layer, in its own thread, its file, its filter and its CRS."""
+        self.source = cloud_source(request, "INPUT")
+        if self.source.fault is not None:
+            raise QgsProcessingException(self.source.fault)
 
     def terrain(self, request: Request) -> Terrain:
         """Return the terrain in the file."""
@@ -172,10 +185,10 @@ class CloudInput(TerrainWaveletsAlgorithm):
         from ..qgis_io.crs_and_progress import coordinate_system
         from ..qgis_io.laz_unpacker import as_las
 
-        path = request.input_file("INPUT")
+        path = self.source.path
         request.stage(tr("Reading the points"))
         attributes = [*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")]
-        classes, carry = request.whole_numbers("CLASSES") or None, request.flag("CARRY")
+        classes, carry = self._classes(request), request.flag("CARRY")
         takes_ground = self.TAKES_GROUND and classes is None
         keep_noise, keep_withheld = request.flag("KEEP_NOISE"), request.flag("KEEP_WITHHELD")
 
@@ -203,6 +216,8 @@ class CloudInput(TerrainWaveletsAlgorithm):
                 else tr("Taken: all points, since none is classified as ground (class 2)")
             )
         crs = request.crs("CRS")
+        if not crs.isValid():
+            crs = self.source.crs
         if not crs.isValid() and place.wkt:
             crs = QgsCoordinateReferenceSystem.fromWkt(place.wkt)
             if not crs.isValid():
@@ -228,6 +243,26 @@ class CloudInput(TerrainWaveletsAlgorithm):
             )
 
         return request.computed(triangulate, 0.05, 0.15)
+
+    def _classes(self, request: Request) -> list[int] | None:
+        """Return the classes that are read: those named, of those that a layer's filter leaves."""
+        named, left = request.whole_numbers("CLASSES"), self.source.classes
+        if left is None:
+            return named or None
+        told = (
+            ", ".join(map(str, left))
+            if len(left) <= MOST_TOLD
+            else tr("{} classes").format(len(left))
+        )
+        request.say(tr("The filter of the layer {} leaves: {}").format(self.source.layer, told))
+        chosen = [number for number in left if not named or number in named]
+        if not chosen:
+            raise QgsProcessingException(
+                tr("{}: its filter leaves none of the classes that are named; change one.").format(
+                    self.source.layer
+                )
+            )
+        return chosen
 
     def more_options(self, request: Request, terrain: Terrain) -> WaveletOptions:
         """Return the weights of the attributes."""

@@ -9,7 +9,7 @@ from qgis.core import QgsProcessingParameterFile
 
 from ..base import TerrainWaveletsAlgorithm
 from ..parameters.request import Request
-from ..ui.known_pyramids import known_pyramids
+from ..ui.file_metadata import file_widget
 from ..ui.translation import tr
 
 if TYPE_CHECKING:
@@ -30,11 +30,7 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
         parameter = QgsProcessingParameterFile(
             "INPUT", tr("Pyramid"), extension="gpkg", fileFilter=tr("Pyramid (*.gpkg)")
         )
-        # By name, for what is imported with it needs a window.
-        widgets = f"{known_pyramids.__module__.rpartition('.')[0]}.pyramid_widget"
-        parameter.setMetadata(
-            {"widget_wrapper": {"class": f"{widgets}.PyramidWrapper", "level": level}}
-        )
+        parameter.setMetadata(file_widget("PyramidWrapper", level=level))
         self.add(
             parameter,
             tr(

@@ -37,6 +37,7 @@ from ..ui.enums import POLYGONS, REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._dem_input import DemInput
+from ._solver_input import add_solver_parameters, for_solver, solver_packages, solver_refusal
 
 if TYPE_CHECKING:
     from wavelet_gis.model.terrain import Terrain
@@ -143,6 +144,7 @@ class SimplifyDem(DemInput):
             tr("Height and all, also where the RMSE counts: heights are not fitted."),
             advanced=True,
         )
+        add_solver_parameters(self)
         add_cell_size_parameter(
             self,
             tr("In the unit of the CRS; empty for the grid of the DEM, or the spacing of points."),
@@ -206,7 +208,7 @@ class SimplifyDem(DemInput):
         rules = request.has("VERTICES"), request.has("MAX_ERROR") or by_place, request.has("RMSE")
         if sum(rules) > 1:
             return tr("Give one of three: the number of vertices, the largest error, or the RMSE.")
-        return tolerance_refusal(request)
+        return tolerance_refusal(request) or solver_refusal(request)
 
     def take_layers(self, request: Request) -> None:
         """Take from the layers, in their own thread, what reading them needs."""
@@ -215,7 +217,7 @@ class SimplifyDem(DemInput):
 
     def packages(self, request: Request) -> tuple[Package, ...]:
         """Return what writing the mesh needs."""
-        return mesh_packages(request)
+        return (*mesh_packages(request), *solver_packages(request))
 
     def work(self, request: Request) -> Values:
         """Read, simplify, measure, write what was asked for."""
@@ -253,7 +255,7 @@ class SimplifyDem(DemInput):
                 **options,
             )
 
-        simplified = request.computed(compute, 0.15, 0.7)
+        simplified = for_solver(request, request.computed(compute, 0.15, 0.65))
         figures = {
             **surface_figures(simplified),
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,

@@ -8,6 +8,7 @@ from qgis.core import QgsProcessingOutputNumber, QgsProcessingParameterFileDesti
 
 from ..base import Values
 from ..parameters.request import Request
+from ..parameters.tolerance import take_tolerance
 from ..ui import dependencies
 from ..ui.translation import tr
 from ._cloud_input import CloudInput
@@ -83,6 +84,11 @@ class SimplifyPointCloud(CloudInput, SimplifyDem):
     def refusal(self, request: Request) -> str | None:
         """Refuse more than one rule, and what cannot be read."""
         return SimplifyDem.refusal(self, request) or CloudInput.refusal(self, request)
+
+    def take_layers(self, request: Request) -> None:
+        """Take from the layers, in their own thread, what reading them needs."""
+        CloudInput.take_layers(self, request)
+        self.tolerance = take_tolerance(request)
 
     def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
         """Return what reading and writing the files needs."""

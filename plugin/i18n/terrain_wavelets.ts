@@ -60,6 +60,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>A file, or a point cloud layer of the project, by its name or id: its filter by class and its CRS count. Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Attributes</source>
     <translation type="unfinished"></translation>
   </message>
@@ -115,11 +120,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -155,12 +155,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Point cloud file</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
+    <source>Point cloud</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -176,6 +171,11 @@
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Taken: the {} points of the ground (class 2), of {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>The filter of the layer {} leaves: {}</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -210,12 +210,37 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>{} classes</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>{}: QGIS does not understand the CRS in the file; choose one.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>{}: there is no such file; choose a LAS or LAZ file.</source>
+    <source>{}: its filter leaves none of the classes that are named; change one.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, asks for more than classes; export the layer, or filter by Classification alone.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, lets no class through; change it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: there is no such file; choose a point cloud.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: this layer is of {}, and local LAS, LAZ and COPC files are what is read; export it as one.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -271,6 +296,56 @@
   <message>
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
     <source>{}: there is no such file; choose a pyramid.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Angles {:.3g} to {:.3g} degrees, edges {:.4g} to {:.4g}, areas to {:.4g}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>In degrees, at most 30; 25 where another of these bounds is given. Nodes are added to the TIN until all bounds hold. Needs the Python packages cgal and shapely.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>In the unit of the CRS, metres for degrees: no edge is longer.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Its area, in the squared unit of the CRS.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Largest triangle for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Longest edge for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Meshing for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>No two vertices of the TIN are nearer, but for those of outline and lines.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Shortest edge for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Smallest angle for a solver</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1874,6 +1949,96 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source> zoom   tiles  vertices  largest error (m)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Empty for the one whose tiles have some 128 points along each side.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Finest zoom</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Folder of tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>For light and shade.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Height beyond the data</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>In metres.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Largest error of the finest zoom, in metres</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Number of tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Number of zooms</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Of the finest zoom, in metres; twice that for the next, and so on. Empty for a tenth of the spacing of the points.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Quantized-mesh tiles of all zooms for globes such as CesiumJS, and for QGIS</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Terrain for the web</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>With &lt;i&gt;layer.json&lt;/i&gt; and the tiles. An earlier tile set there is replaced.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Write normals</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Writes the terrain as tiles of triangles for all zooms, without cracks between them, each zoom half as far off as the one before. A web server that gives the folder to a globe is all that it takes; QGIS reads it as a quantized-mesh layer.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Writing the tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>quantized mesh,cesium,globe,tiles,terrain,3d,web,layer.json,level,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/base.py"/>
     <source>Also returned</source>
     <translation type="unfinished"></translation>
@@ -2440,6 +2605,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
+    <source>meshes for solvers: bounds of angles and edges</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
     <source>missing Python package: {names}. Install it {remedy} and start QGIS again.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -2451,6 +2621,46 @@
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
     <source>two to seven times as fast</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>Select a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a point cloud layer of the project, or a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>level</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>not measured</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2476,36 +2686,6 @@
   <message>
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>Select a file</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>a pyramid of this project or session, or a file</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>largest error</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>level</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>not measured</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -60,6 +60,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>A file, or a point cloud layer of the project, by its name or id: its filter by class and its CRS count. Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
+    <translation>Eine Datei, oder ein Punktwolken-Layer des Projekts, mit Namen oder Kennung: sein Filter nach Klassen und sein KBS gelten. Das Plugin liest selbst, QGIS braucht keine Unterstützung für Punktwolken.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Attributes</source>
     <translation>Attribute</translation>
   </message>
@@ -115,11 +120,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
-    <translation>LAS, LAZ und COPC (*.las *.laz *.LAS *.LAZ)</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Leave out only what such edges open to the outside; gaps inside stay closed.</source>
     <translation>Nur weglassen, was solche Kanten nach außen öffnen; Lücken im Inneren bleiben geschlossen.</translation>
   </message>
@@ -155,13 +155,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Point cloud file</source>
-    <translation>Punktwolkendatei</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Read by the plugin itself, so no point cloud support in QGIS is needed.</source>
-    <translation>Die Erweiterung liest sie selbst; QGIS muss Punktwolken nicht unterstützen.</translation>
+    <source>Point cloud</source>
+    <translation>Punktwolke</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
@@ -177,6 +172,11 @@
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>Taken: the {} points of the ground (class 2), of {}</source>
     <translation>Genommen: die {} Punkte des Bodens (Klasse 2) von {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>The filter of the layer {} leaves: {}</source>
+    <translation>Der Filter des Layers {} lässt übrig: {}</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
@@ -210,13 +210,38 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
+    <source>{} classes</source>
+    <translation>{} Klassen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_input.py"/>
     <source>{}: QGIS does not understand the CRS in the file; choose one.</source>
     <translation>{}: QGIS versteht das KBS in der Datei nicht; wählen Sie eines.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>{}: there is no such file; choose a LAS or LAZ file.</source>
-    <translation>{}: Diese Datei gibt es nicht; wählen Sie eine LAS- oder LAZ-Datei.</translation>
+    <source>{}: its filter leaves none of the classes that are named; change one.</source>
+    <translation>{}: sein Filter lässt keine der genannten Klassen übrig; eines davon ändern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, asks for more than classes; export the layer, or filter by Classification alone.</source>
+    <translation>{}: sein Filter, {}, fragt nach mehr als Klassen; den Layer exportieren, oder nur nach Classification filtern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: its filter, {}, lets no class through; change it.</source>
+    <translation>{}: sein Filter, {}, lässt keine Klasse durch; ihn ändern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: there is no such file; choose a point cloud.</source>
+    <translation>{}: es gibt keine solche Datei; eine Punktwolke wählen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_cloud_source.py"/>
+    <source>{}: this layer is of {}, and local LAS, LAZ and COPC files are what is read; export it as one.</source>
+    <translation>{}: dieser Layer ist aus {}, gelesen werden lokale LAS-, LAZ- und COPC-Dateien; ihn als eine solche exportieren.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_dem_input.py"/>
@@ -272,6 +297,56 @@
     <location filename="../../plugin/algorithms/_pyramid_input.py"/>
     <source>{}: there is no such file; choose a pyramid.</source>
     <translation>{}: Diese Datei gibt es nicht; wählen Sie eine Pyramide.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Angles {:.3g} to {:.3g} degrees, edges {:.4g} to {:.4g}, areas to {:.4g}</source>
+    <translation>Winkel {:.3g} bis {:.3g} Grad, Kanten {:.4g} bis {:.4g}, Flächen bis {:.4g}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>In degrees, at most 30; 25 where another of these bounds is given. Nodes are added to the TIN until all bounds hold. Needs the Python packages cgal and shapely.</source>
+    <translation>In Grad, höchstens 30; 25, wenn eine andere dieser Schranken angegeben ist. Dem TIN werden Knoten hinzugefügt, bis alle Schranken eingehalten sind. Braucht die Python-Pakete cgal und shapely.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>In the unit of the CRS, metres for degrees: no edge is longer.</source>
+    <translation>In der Einheit des KBS, bei Grad in Metern: keine Kante ist länger.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Its area, in the squared unit of the CRS.</source>
+    <translation>Seine Fläche, in der quadrierten Einheit des KBS.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Largest triangle for a solver</source>
+    <translation>Größtes Dreieck für einen Löser</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Longest edge for a solver</source>
+    <translation>Längste Kante für einen Löser</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Meshing for a solver</source>
+    <translation>Vernetzen für einen Löser</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>No two vertices of the TIN are nearer, but for those of outline and lines.</source>
+    <translation>Keine zwei Stützpunkte des TIN liegen näher beisammen, außer denen von Umriss und Linien.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Shortest edge for a solver</source>
+    <translation>Kürzeste Kante für einen Löser</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Smallest angle for a solver</source>
+    <translation>Kleinster Winkel für einen Löser</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/analyse_dem.py"/>
@@ -1874,6 +1949,96 @@
     <translation>ausdünnen,vereinfachen,generalisieren,thin,thinning,decimate,subsample,reduce,simplify,generalise,generalize,las,laz,lidar,punktwolke,point cloud,boden,ground,key points,model key points</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source> zoom   tiles  vertices  largest error (m)</source>
+    <translation> Zoom Kacheln  Punkte  größter Fehler (m)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Empty for the one whose tiles have some 128 points along each side.</source>
+    <translation>Leer für die, deren Kacheln rund 128 Punkte je Seite haben.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Finest zoom</source>
+    <translation>Feinste Zoomstufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Folder of tiles</source>
+    <translation>Ordner der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>For light and shade.</source>
+    <translation>Für Licht und Schatten.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Height beyond the data</source>
+    <translation>Höhe außerhalb der Daten</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>In metres.</source>
+    <translation>In Metern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Largest error of the finest zoom, in metres</source>
+    <translation>Größter Fehler der feinsten Zoomstufe, in Metern</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Number of tiles</source>
+    <translation>Anzahl der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Number of zooms</source>
+    <translation>Anzahl der Zoomstufen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Of the finest zoom, in metres; twice that for the next, and so on. Empty for a tenth of the spacing of the points.</source>
+    <translation>Der feinsten Zoomstufe, in Metern; das Doppelte für die nächste, und so weiter. Leer für ein Zehntel des Punktabstands.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Quantized-mesh tiles of all zooms for globes such as CesiumJS, and for QGIS</source>
+    <translation>Quantized-Mesh-Kacheln aller Zoomstufen für Globen wie CesiumJS, und für QGIS</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Terrain for the web</source>
+    <translation>Gelände fürs Web</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>With &lt;i&gt;layer.json&lt;/i&gt; and the tiles. An earlier tile set there is replaced.</source>
+    <translation>Mit &lt;i&gt;layer.json&lt;/i&gt; und den Kacheln. Ein früherer Kachelsatz dort wird ersetzt.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Write normals</source>
+    <translation>Normalen schreiben</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Writes the terrain as tiles of triangles for all zooms, without cracks between them, each zoom half as far off as the one before. A web server that gives the folder to a globe is all that it takes; QGIS reads it as a quantized-mesh layer.</source>
+    <translation>Schreibt das Gelände als Kacheln aus Dreiecken für alle Zoomstufen, ohne Risse dazwischen, jede halb so weit daneben wie die vorige. Ein Webserver, der den Ordner einem Globus gibt, genügt; QGIS liest ihn als Quantized-Mesh-Layer.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>Writing the tiles</source>
+    <translation>Schreiben der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>quantized mesh,cesium,globe,tiles,terrain,3d,web,layer.json,level,pyramid,wavelet</source>
+    <translation>Quantized Mesh,Cesium,Globus,Kacheln,Gelände,3D,Web,layer.json,Stufe,Pyramide,Wavelet</translation>
+  </message>
+  <message>
     <location filename="../../plugin/base.py"/>
     <source>Also returned</source>
     <translation>Außerdem zurückgegeben</translation>
@@ -2440,6 +2605,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
+    <source>meshes for solvers: bounds of angles and edges</source>
+    <translation>Netze für Löser: Schranken für Winkel und Kanten</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
     <source>missing Python package: {names}. Install it {remedy} and start QGIS again.</source>
     <translation>Fehlendes Python-Paket: {names}. Installieren Sie es {remedy} und starten Sie QGIS neu.</translation>
   </message>
@@ -2452,6 +2622,46 @@
     <location filename="../../plugin/ui/dependencies.py"/>
     <source>two to seven times as fast</source>
     <translation>zwei- bis siebenmal so schnell</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>LAS, LAZ and COPC (*.las *.laz *.LAS *.LAZ)</source>
+    <translation>LAS, LAZ und COPC (*.las *.laz *.LAS *.LAZ)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>Select a file</source>
+    <translation>Datei wählen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a point cloud layer of the project, or a file</source>
+    <translation>ein Punktwolken-Layer des Projekts, oder eine Datei</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>a pyramid of this project or session, or a file</source>
+    <translation>eine Pyramide dieses Projekts oder dieser Sitzung, oder eine Datei</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>largest error</source>
+    <translation>größter Fehler</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>level</source>
+    <translation>Stufe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>not measured</source>
+    <translation>nicht gemessen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/file_widgets.py"/>
+    <source>vertices</source>
+    <translation>Stützpunkte</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/known_pyramids.py"/>
@@ -2477,36 +2687,6 @@
     <location filename="../../plugin/ui/options_page.py"/>
     <source>{}: {}; missing, install it {}</source>
     <translation>{}: {}; fehlt, zu installieren {}</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>Select a file</source>
-    <translation>Datei wählen</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>a pyramid of this project or session, or a file</source>
-    <translation>eine Pyramide dieses Projekts oder dieser Sitzung, oder eine Datei</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>largest error</source>
-    <translation>größter Fehler</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>level</source>
-    <translation>Stufe</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>not measured</source>
-    <translation>nicht gemessen</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/ui/pyramid_widget.py"/>
-    <source>vertices</source>
-    <translation>Stützpunkte</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/wording.py"/>

@@ -12,6 +12,8 @@ from qgis.core import (
     QgsProcessingParameterFileDestination,
 )
 
+from .request import file_of
+
 if TYPE_CHECKING:
     from qgis.core import (
         QgsProcessingAlgorithm,
@@ -35,6 +37,8 @@ def check_outputs(
 
     inputs = _input_files(algorithm, parameters, context)
     for definition in algorithm.destinationParameterDefinitions():
+        if definition.type() == "folderDestination":  # its writer looks at what is there
+            continue
         path = _chosen_file(definition, parameters.get(definition.name()))
         if path is not None:
             suffixes: tuple[str, ...] = ()
@@ -61,7 +65,7 @@ def _input_files(
     for definition in algorithm.parameterDefinitions():
         name, kind = definition.name(), definition.type()
         if kind == "file":
-            files.append(algorithm.parameterAsString(parameters, name, context))
+            files.append(file_of(algorithm, parameters, name, context))
         elif kind == "raster":
             raster = algorithm.parameterAsRasterLayer(parameters, name, context)
             files.append(raster.source() if raster else "")

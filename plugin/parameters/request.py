@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from qgis.core import QgsProcessingFeedback
+from qgis.core import QgsPointCloudLayer, QgsProcessingFeedback
 
 from ..qgis_io.crs_and_progress import progress, require_running
 from ..qgis_io.patience import Result, computed
@@ -136,8 +137,12 @@ class Request:
 
     def input_file(self, name: str) -> str:
         """Return the path of a file that is read, without the name of a layer in it."""
-        path = self.algorithm.parameterAsString(self.parameters, name, self.context)
-        return path.split("|")[0]
+        return file_of(self.algorithm, self.parameters, name, self.context)
+
+    def input_cloud(self, name: str) -> QgsPointCloudLayer | None:
+        """Return the layer that a file's parameter names; None where it names a file."""
+        value = self.algorithm.parameterAsString(self.parameters, name, self.context)
+        return _cloud_layer(value, self.context)
 
     def source(self, name: str) -> QgsProcessingFeatureSource | None:
         """Return the features of a layer; None where none was chosen."""
@@ -215,6 +220,29 @@ class Request:
         definition = self.algorithm.parameterDefinition(name)
         has_default = definition is not None and definition.defaultValue() is not None
         return self.parameters.get(name) is None and not has_default
+
+
+def file_of(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: dict[str, Any],
+    name: str,
+    context: QgsProcessingContext,
+) -> str:
+    """Return the path of a file that is read: as it is named, or that of a point cloud layer."""
+    value = algorithm.parameterAsString(parameters, name, context)
+    layer = _cloud_layer(value, context)
+    return value.split("|")[0] if layer is None else layer.source()
+
+
+def _cloud_layer(value: str, context: QgsProcessingContext) -> QgsPointCloudLayer | None:
+    """Return the point cloud layer of the project with an id, or a name; None for all else."""
+    project = context.project()
+    if project is None or not value or os.path.exists(value):
+        return None
+    for layer in (project.mapLayer(value), *project.mapLayersByName(value)):
+        if isinstance(layer, QgsPointCloudLayer):
+            return layer
+    return None
 
 
 def without_tags(text: str) -> str:

@@ -44,6 +44,8 @@ PYPROJ = Package("pyproj", "pyproj", "python3-pyproj")
 SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
 TRIMESH = Package("trimesh", "trimesh")
 EZDXF = Package("ezdxf", "ezdxf")
+CGAL = Package("CGAL", "cgal")
+SHAPELY = Package("shapely", "shapely", "python3-shapely")
 
 PYTHONCDT = Package("pythoncdt", "PythonCDT")
 
@@ -61,6 +63,7 @@ def optional_packages() -> list[tuple[Package, str]]:
         (SCIKIT_LEARN, tr("classes learned in Cluster details")),
         (TRIMESH, tr("meshes as GLB")),
         (EZDXF, tr("meshes as DXF")),
+        (CGAL, tr("meshes for solvers: bounds of angles and edges")),
     ]
 
 

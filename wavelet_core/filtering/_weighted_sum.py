@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from .._validate import FloatArray
 from ..lifting.linear_map import LinearStep, Transform
 from ._bounded import least_within, moments_of
-from .noise import local_energy
-from .noise_model import Noise
+from .noise.model import Noise
+from .noise.white import local_energy
 from .undecimated import UndecimatedBank
 
 

@@ -16,7 +16,7 @@ from ..lifting.pyramid import Pyramid
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Progress, part_of, report
 from .gains import channel_index, relifted
-from .noise import channel_noise, check_sigma, deviation_of, local_energy, noise_gains
+from .noise.white import channel_noise, check_sigma, deviation_of, local_energy, noise_gains
 
 #: Thresholds in standard deviations of the noise, for strength 1.
 HARD_THRESHOLD = 3.0

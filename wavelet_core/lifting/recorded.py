@@ -32,10 +32,10 @@ from .step import Step
 
 __all__ = [
     "Frame",
+    "KeptRecord",
     "Record",
     "RecordPart",
     "Recorder",
-    "Told",
     "is_error_guided",
     "part_of",
     "pyramid_of",
@@ -94,11 +94,11 @@ class Record(NamedTuple):
     parts: tuple[RecordPart, ...]
 
 
-class Told(NamedTuple):
+class KeptRecord(NamedTuple):
     """A record that was taken during the analysis, and what it was taken of.
 
     record : Record
-    steps, coarse : of the pyramid; of any other it tells nothing
+    steps, coarse : of the pyramid; it describes no other
     columns : bytes, digest of the input's z and attributes
     """
 
@@ -108,7 +108,7 @@ class Told(NamedTuple):
     columns: bytes
 
     def fits(self, pyramid: Pyramid, mesh: TriangleMesh) -> bool:
-        """Whether it tells that pyramid to whoever has that input."""
+        """Whether it describes that pyramid to a reader who has that input."""
         is_of_it = self.steps is pyramid.steps and self.coarse is pyramid.coarse
         return is_of_it and self.columns == _digest(_columns(mesh))
 
@@ -189,8 +189,8 @@ class Recorder:
         start = _part_start(begun, plan, locked, self._frame, self._manner)
         self._level = RecordedLevel(start, self._manner)
 
-    def told(self, steps: tuple[Step, ...], coarse: FloatArray) -> Told | None:
-        """Return the record of a pyramid whose steps were kept; None where none tells it."""
+    def kept(self, steps: tuple[Step, ...], coarse: FloatArray) -> KeptRecord | None:
+        """Return the record of a pyramid whose steps were kept; None where none describes it."""
         if self._failed or not steps:
             return None
         if self._next is None and self._here is not None and self._begins_part(COARSEST_SHARE):
@@ -200,7 +200,7 @@ class Recorder:
             self._next = None
         self._here = None
         parts = (*self._parts, RecordPart(self._writer.answers(), **self._begun))
-        return Told(Record(self._frame, parts), steps, coarse, _digest(_columns(self._mesh)))
+        return KeptRecord(Record(self._frame, parts), steps, coarse, _digest(_columns(self._mesh)))
 
 
 def frame_of(mesh: TriangleMesh, attribute_weights: Sequence[float]) -> Frame:
@@ -219,7 +219,7 @@ def frame_of(mesh: TriangleMesh, attribute_weights: Sequence[float]) -> Frame:
 def record_of(
     pyramid: Pyramid, mesh: TriangleMesh, progress: Progress | None = None
 ) -> Record | None:
-    """Return what tells a pyramid to whoever has its input; None where it is not told to the bit.
+    """Return the record of a pyramid for a reader who has its input; None where it is not exact.
 
     Parameters
     ----------
@@ -237,8 +237,8 @@ def record_of(
         return None
     if not np.array_equal(pyramid.faces, mesh.faces):
         return None
-    if pyramid.told is not None and pyramid.told.fits(pyramid, mesh):
-        return pyramid.told.record
+    if pyramid.kept_record is not None and pyramid.kept_record.fits(pyramid, mesh):
+        return pyramid.kept_record.record
     frame = frame_of(mesh, pyramid.parameters["attribute_weights"])
     manner = _manner(pyramid, frame)
     columns = _columns(mesh)
@@ -274,7 +274,7 @@ def pyramid_of(
     parameters: Mapping[str, Any],
     stop: StopRecord | None,
 ) -> Pyramid:
-    """Return the pyramid that a record tells.
+    """Return the pyramid that a record describes.
 
     Parameters
     ----------

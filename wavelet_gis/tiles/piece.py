@@ -26,9 +26,10 @@ from wavelet_core import analyse as core_analyse
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_bytes, write_text
-from wavelet_gis.model.dem import Dem, GridGeometry, RasterOrigin, dem_mesh
+from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.model.raster_origin import RasterOrigin
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected
 from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan

@@ -18,7 +18,7 @@ from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
-from wavelet_gis.io.names import files_of, gdal_path, told_as_one
+from wavelet_gis.io.names import files_of, gdal_path, joint_name
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.terrain import frame_of_bounds
 
@@ -387,7 +387,7 @@ def plan_of_rasters(
     shape = (int(high[0] - low[0]), int(high[1] - low[1]))
     geometry = GridGeometry(shape, tuple(map(float, transform)))  # type: ignore[arg-type]
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
-    name = told_as_one(paths)
+    name = joint_name(paths)
     frame, unit = frame_of_bounds(
         name, system, grid_bounds(geometry), vertical_unit or place.vertical_unit
     )

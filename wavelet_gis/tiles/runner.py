@@ -72,7 +72,7 @@ def require_dask() -> None:
     """Raise where a scheduler is named and dask is not installed."""
     if find_spec("distributed") is None:
         raise MissingDependencyError(
-            "a scheduler is asked by dask.distributed; install it with 'pip install distributed', "
+            "using a scheduler needs dask.distributed; install it with 'pip install distributed', "
             "or leave {0} out.",
             "scheduler",
         )

@@ -253,7 +253,7 @@ def test_workers_and_program_that_are_killed_at_random_cost_what_is_in_flight(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
 def test_a_disk_that_fills_up_costs_what_does_not_fit(tmp_path):
-    from cli.test_full_disk import files_limited_to
+    from cli.faults.test_full_disk import files_limited_to
 
     (tmp_path / "in").mkdir()
     las = laspy.read(write_las(tmp_path / "raw.las", 6000))

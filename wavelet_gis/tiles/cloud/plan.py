@@ -16,7 +16,7 @@ from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
 from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, laspy_header
-from wavelet_gis.io.names import files_of, told_as_one
+from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.points.aside import DUPLICATE_RULES
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import frame_of_bounds, require_plan
@@ -117,7 +117,7 @@ def plan_of_clouds(
         ],
     )
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
-    name = told_as_one(paths)
+    name = joint_name(paths)
     scales, offsets = heads[0].layout.scales, heads[0].layout.offsets
     low, high = _extents(paths, heads)
     corners = np.array([[*low.min(axis=0), 0], [*high.max(axis=0), 0]])
@@ -265,7 +265,7 @@ def _extents(
     low, high = np.array(lows), np.array(highs)
     if max(-low.min(), high.max()) > _LARGEST_SHIFT:
         raise InputFileError(
-            f"{told_as_one(list(paths))}: the files lie too far from one another for coordinates "
+            f"{joint_name(list(paths))}: the files lie too far from one another for coordinates "
             f"in steps of {max(map(abs, first.scales)):g}; tile them in parts."
         )
     return low.astype(np.int64), high.astype(np.int64)
