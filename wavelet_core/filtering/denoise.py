@@ -23,7 +23,8 @@ from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
 from .noise.white import check_sigma, noise_columns, noise_gains
 from .undecimated import UndecimatedBank
 
-#: Scales of the details of all vertices for a level of a pyramid: they reach as far.
+#: Scales of the details of all vertices for a level of a pyramid: they reach as far. On crops of
+#: two DEMs half as many leave 0 to 1.3 % more error, and twice as many the same in twice the time.
 SCALES_PER_LEVEL = 0.5
 #: A pyramid for denoising stops where its mesh would be smaller than this.
 LEAST_VERTICES = 100
