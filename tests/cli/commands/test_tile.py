@@ -34,6 +34,8 @@ def test_from_a_raster_to_tiles_and_back(done, refused, tmp_path):
     done("analyse", dem, tmp_path / "dem.gpkg", "--levels", 2)
     message = refused("extract", tmp_path / "dem.gpkg", tmp_path / "d.ply", "--bbox", box)
     assert "--bbox is for tile sets" in message
+    message = refused("extract", tmp_path / "dem.gpkg", tmp_path / "d.ply", "--polygon", dem)
+    assert "--polygon is for tile sets" in message
 
 
 def test_from_clouds_to_tiles_and_back(done, refused, tmp_path):
@@ -45,6 +47,10 @@ def test_from_clouds_to_tiles_and_back(done, refused, tmp_path):
     assert "6,000 points of 1 file in 2 tiles" in done(*arguments).out
     done("reconstruct", index, tmp_path / "back.las")
     assert (tmp_path / "back.las").read_bytes() == cloud.read_bytes()
+    within = done("extract", index, tmp_path / "b.ply", "--max-error", "2", "--json").figures
+    assert 0 < within["max_error"] <= 2
+    message = refused("extract", index, tmp_path / "d.ply", "--max-error", "2*slope")
+    assert "is one number" in message
     box = "500010,5100010,500030,5100030"
     part = done("extract", index, tmp_path / "a.ply", "--level", 20, "--bbox", box, "--json")
     assert part.figures["n_vertices"] > 10

@@ -84,6 +84,8 @@ def plan_of_clouds(
     OptionError
         A size or a number of levels that makes no tiles.
     """
+    import shapely
+
     from wavelet_gis.crs.lookup import coordinate_system
 
     if not 1 <= levels <= 64:
@@ -148,8 +150,8 @@ def plan_of_clouds(
             "them to like scales first (pdal translate --writers.las.scale_x and so on)."
         )
     n_points = sum(head.layout.n_points for head in heads)
-    sizes = (high - low).astype(np.float64) * (p, q)
-    spacing = max(round(float(np.sqrt(sizes.prod(axis=1).sum() / n_points))), 1)
+    boxes = shapely.box(*(low * (p, q)).T, *(high * (p, q)).T)  # flight lines overlap
+    spacing = max(round(float(np.sqrt(shapely.union_all(boxes).area / n_points))), 1)
     rows, columns = _ends(tile, shape, (scales[0], scales[1]), (p, q), spacing, n_points)
     shortest = min(np.diff(rows).min() * q, np.diff(columns).min() * p)
     files = [
