@@ -1,4 +1,4 @@
-"""Write docs/data-table.md: every file of the real test data, what became of it, and why so.
+"""Write docs/reference/data-table.md: what became of every file of the real test data.
 
     python3 scripts/data_table.py [--only SMALL|LARGE|MISSING] [--data FOLDER]
 
@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "data-table.md"
+PAGE = ROOT / "docs" / "reference" / "data-table.md"
 FOLDERS = ("dems", "clouds", "nasty", "ept", "found")
 
 #: Files from here on, in bytes, take long: rasters are compressed, clouds hold 10 bytes a point.

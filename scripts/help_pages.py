@@ -81,7 +81,7 @@ def _link(found: re.Match[str]) -> str:
     if re.match(r"https?:", target):
         return f'<a href="{html.escape(target)}">{words}</a>'
     page_name, _, anchor = target.partition("#")
-    if page_name and not re.fullmatch(r"[\w-]+\.md", page_name):
+    if page_name and (not page_name.endswith(".md") or "made/" in page_name):
         return words  # a file that is not in the zip
-    href = page_name.replace(".md", ".html") + ("#" + anchor if anchor else "")
+    href = page_name.rpartition("/")[2].replace(".md", ".html") + ("#" + anchor if anchor else "")
     return f'<a href="{href}">{words}</a>'

@@ -102,8 +102,9 @@ def build(with_laspy: bool = True) -> bytes:
             messages = translated(content.decode("utf-8"))
             if messages:  # the template has none
                 files[str(path.with_suffix(".qm"))] = compiled(messages)
-    for name in _git("ls-tree", "--name-only", "HEAD", "docs/").decode().split():
-        if name.endswith(".md"):
+    # The folders of docs/ make one: the plugin names its pages without them.
+    for name in _git("ls-tree", "-r", "--name-only", "HEAD", "docs/").decode().split():
+        if name.endswith(".md") and name.count("/") == 2:  # index.md is the contents of the site
             text = _git("show", f"HEAD:{name}").decode("utf-8")
             files[f"help/{Path(name).stem}.html"] = page(text).encode("utf-8")
     if with_laspy:

@@ -1,4 +1,4 @@
-"""Draw the pictures of docs/qgis.md, with the QGIS of this Python and matplotlib's DEM.
+"""Draw the pictures of docs/howto/qgis.md, with the QGIS of this Python and matplotlib's DEM.
 
     QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis-pictures.py DEM.tif [--full FOLDER]
 

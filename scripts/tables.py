@@ -82,7 +82,7 @@ def renewed(page: str) -> str:
 def main() -> None:
     """Rewrite the pages and name those that changed."""
     sys.path.insert(0, str(ROOT))
-    for path in sorted((ROOT / "docs").glob("*.md")):
+    for path in sorted((ROOT / "docs").glob("*/*.md")):
         old = path.read_text(encoding="utf-8")
         new = renewed(old)
         if new != old:

@@ -20,7 +20,7 @@ COMMAND = shutil.which("qgis_process.bin") or shutil.which("qgis_process")
 HAS_QGIS = importlib.util.find_spec("qgis") is not None
 
 #: What a folder of tests may not collect without QGIS.
-NEEDS_QGIS = [] if HAS_QGIS else ["test_qgis_*.py"]
+NEEDS_QGIS = [] if HAS_QGIS else ["test_qgis_*.py", "*/test_qgis_*.py"]
 
 
 def say_if_not_run(terminalreporter):

@@ -20,7 +20,7 @@ PAGES = sorted(
     if not {"_build", "made"} & set(path.relative_to(ROOT / "docs").parts)
 )
 #: Pages whose blocks of Python go on from one another.
-STORIES = ("docs/concepts.md", "docs/howto/python.md")
+STORIES = ("docs/start/concepts.md", "docs/howto/python.md")
 #: Pages whose commands are run, in their order, beside dem.tif and cloud.laz.
 RUN = sorted(page for page in PAGES if page.startswith("docs/howto/"))
 

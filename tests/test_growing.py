@@ -48,11 +48,14 @@ def run(copy, *arguments):
 
 
 def test_they_are_in_the_tables_of_the_docs(grown):
-    assert set(run(grown, "scripts/tables.py").split()) == {"docs/formats.md", "docs/notation.md"}
-    notation = (grown / "docs" / "notation.md").read_text("utf-8")
+    assert set(run(grown, "scripts/tables.py").split()) == {
+        "docs/reference/formats.md",
+        "docs/science/notation.md",
+    }
+    notation = (grown / "docs/science/notation.md").read_text("utf-8")
     assert "| `inverse_square` | `ISQ` | one over the squared distance in plan |" in notation
     assert "| `lowest_first` | the lowest first |" in notation
-    assert "| OFF | `.off` |" in (grown / "docs" / "formats.md").read_text("utf-8")
+    assert "| OFF | `.off` |" in (grown / "docs/reference/formats.md").read_text("utf-8")
 
 
 def test_they_are_in_the_help_of_the_commands(grown):

@@ -1,7 +1,9 @@
 """Imports run one way: between the layers, between the rooms of a layer, and in no circle."""
 
 import ast
+import re
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -239,6 +241,19 @@ def test_every_room_has_its_place_in_the_order():
         assert rooms <= set(order), f"{layer}: {sorted(rooms - set(order))}"
 
 
+def rooms_on_the_map(text: str, layer: str) -> list[str]:
+    """Return the folders and modules that the map of a layer lists, in its order."""
+    table = text.partition(f"| `{layer}`, ")[2].partition("\n\n")[0]
+    cells = [row.split("|")[1] for row in table.splitlines() if row.startswith("| `")]
+    return [name.strip("/") for cell in cells for name in re.findall(r"`(\w+/?)`", cell)]
+
+
+@pytest.mark.parametrize("layer", ROOMS)
+def test_the_map_of_the_house_lists_every_room_in_the_order_of_imports(layer):
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    assert rooms_on_the_map(text, layer) == list(ROOMS[layer])
+
+
 #: Folders that hold one file for each row of a table, however many there are.
 OF_TABLES = {
     "plugin/algorithms",
@@ -246,14 +261,36 @@ OF_TABLES = {
     "wavelet_core/_kernels",
     "wavelet_core/_arrays",
 }
+MOST_FILES = 12
+#: What builds make beside the files that are kept, and what Python does.
+MADE = {"_build", "made", "jupyter_execute", "__pycache__", ".ipynb_checkpoints"}
+
+
+def crowded_in(root: Path, tops: Iterable[str]) -> list[str]:
+    """Return the folders below some with more than a dozen files, each with their number."""
+    crowded = []
+    for top in tops:
+        folders = [root / top, *(path for path in (root / top).rglob("*") if path.is_dir())]
+        for folder in folders:
+            name = folder.relative_to(root).as_posix()
+            n_files = sum(path.is_file() and path.suffix != ".pyc" for path in folder.iterdir())
+            is_kept = not MADE & set(folder.relative_to(root).parts)
+            if is_kept and name not in OF_TABLES and n_files > MOST_FILES:
+                crowded.append(f"{name} holds {n_files} files")
+    return crowded
 
 
 def test_no_room_is_crowded():
-    for layer in ALLOWED_ARROWS:
-        for folder in {path.parent for path in (ROOT / layer).rglob("*.py")}:
-            name = folder.relative_to(ROOT).as_posix()
-            files = [path for path in folder.glob("*.py") if path.name != "__init__.py"]
-            assert name in OF_TABLES or len(files) < 12, f"{name} holds {len(files)} modules"
+    crowded = crowded_in(ROOT, [*ALLOWED_ARROWS, "tests", "benchmarks", "docs", "scripts"])
+    assert not crowded, "; ".join(crowded)
+
+
+def test_a_crowded_room_is_seen(tmp_path):
+    for folder, n_files in (("docs/full", 12), ("docs/crowded", 13), ("docs/made", 20)):
+        (tmp_path / folder).mkdir(parents=True)
+        for k in range(n_files):
+            (tmp_path / folder / f"{k}.md").touch()
+    assert crowded_in(tmp_path, ["docs"]) == ["docs/crowded holds 13 files"]
 
 
 def test_numba_is_imported_behind_the_shim_only():

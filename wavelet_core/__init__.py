@@ -34,7 +34,7 @@ from .features.spectrum import (
 )
 from .filtering.denoise import denoise
 from .filtering.gains import band_gains, relifted
-from .filtering.noise import channel_noise, estimate_noise
+from .filtering.noise.white import channel_noise, estimate_noise
 from .lifting.analyse import analyse
 from .lifting.prediction import PREDICTIONS
 from .lifting.pyramid import Detail, Pyramid

@@ -168,7 +168,7 @@ def _require_finite(array: FloatArray, row_name: str, value_name: str) -> None:
         row = int(np.argmax(np.abs(array).max(axis=1)))
         raise MeshError(
             f"{row_name} {row}: its {value_name} is beyond {LARGEST_VALUE:g} "
-            f"({array[row].tolist()}), too large to reckon with; drop the {row_name} or put the "
-            "value right.",
+            f"({array[row].tolist()}), too large to compute with; drop the {row_name} or correct "
+            "the value.",
             row,
         )

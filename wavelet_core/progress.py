@@ -1,4 +1,4 @@
-"""How long work tells how far it is, and how it is stopped."""
+"""How long-running work reports its progress, and how it is stopped."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def watched(look: Callable[[float], None]) -> Iterator[None]:
         _watching.reset(token)
 
 
-def tell_share(share: float) -> None:
+def report_share(share: float) -> None:
     """Tell whoever watches this step, if anybody does, how much of it is done."""
     look = _watching.get()
     if look is not None:
@@ -85,22 +85,22 @@ class Meter:
 
     def begin(self, start: float, stop: float, n_steps: int) -> None:
         """Begin a part of the work, of about so many steps, and tell so."""
-        self._start, self._stop = max(start, self._told), stop
+        self._start, self._stop = max(start, self._reported), stop
         self._wanted, self._done = max(n_steps, 1), 0
-        report(self._progress, self._told, self._message)
+        report(self._progress, self._reported, self._message)
 
     def tick(self) -> None:
         """Tell that a step is done."""
         self._done += 1
-        report(self._progress, self._told, self._message)
+        report(self._progress, self._reported, self._message)
 
     def part(self, fraction: float) -> bool:
         """Take the place of ``progress`` in a step that tells its own fraction."""
         span = (self._stop - self._start) / self._wanted
-        report(self._progress, min(self._told + fraction * span, self._stop), self._message)
+        report(self._progress, min(self._reported + fraction * span, self._stop), self._message)
         return True
 
     @property
-    def _told(self) -> float:
+    def _reported(self) -> float:
         share = min(self._done / self._wanted, 1.0)
         return self._start + share * (self._stop - self._start)

@@ -50,7 +50,7 @@ def parse_json(text: object, where: str) -> Any:
     >>> parse_json('{"rows": 1e999}', "the raster")
     Traceback (most recent call last):
     ...
-    wavelet_core.errors.PyramidError: the raster: 1e999 is no finite number; the file is damaged.
+    wavelet_core.errors.PyramidError: the raster: 1e999 is not finite; the file is damaged.
     """
     if not isinstance(text, str):
         raise PyramidError(
@@ -71,9 +71,7 @@ def parse_json(text: object, where: str) -> Any:
 
     def number(digits: str) -> float:
         if not math.isfinite(value := float(digits)):
-            raise PyramidError(
-                f"{where}: {_short(digits)} is no finite number; the file is damaged."
-            )
+            raise PyramidError(f"{where}: {_short(digits)} is not finite; the file is damaged.")
         return value
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

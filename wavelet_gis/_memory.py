@@ -79,7 +79,7 @@ def _of_system() -> int | None:
 
 
 def _of_pages() -> int | None:
-    """Return half of all memory, where that is all the system tells."""
+    """Return half of all memory, where the system says no more."""
     try:
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
     except (ValueError, OSError, AttributeError):

@@ -1,4 +1,4 @@
-"""Remake the tables and pictures of ``docs/paper-experiments.md``.
+"""Remake the tables and pictures of ``docs/science/paper-experiments.md``.
 
     python -m benchmarks.paper [DATA_FOLDER] [--only rmse,salience,noise,frequency,readings]
                                [--autzen-points 100000]
@@ -17,6 +17,7 @@ from . import clouds, frequency, page, readings, rmse, salience
 
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent.parent / "docs"
+PAGE = DOCS / "science" / "paper-experiments.md"
 EXPERIMENTS = ("frequency", "salience", "noise", "rmse", "readings")
 #: The paper's dense set has 9 M points; Autzen's first 9 M of 10.65 M along y stand for it.
 DENSE_SHARE = 9.0 / 10.65
@@ -47,8 +48,8 @@ def main():
 
     def keep():
         store.write_text(json.dumps(results, indent=1))
-        if (DOCS / "paper-experiments.md").exists():
-            page.fill(DOCS / "paper-experiments.md", results)
+        if PAGE.exists():
+            page.fill(PAGE, results)
 
     for name in arguments.only.split(","):
         print(name, flush=True)

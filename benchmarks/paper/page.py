@@ -1,4 +1,4 @@
-"""The tables of ``docs/paper-experiments.md``, set in place between their marks."""
+"""The tables of ``docs/science/paper-experiments.md``, set in place between their marks."""
 
 from __future__ import annotations
 

@@ -55,9 +55,9 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         self.add(
             choice("LAYERS", tr("Layers in the pyramid"), ("auto", "all", "coarse", "none")),
             tr(
-                "Which layers the pyramid file has, which is complete without them: the coarse TIN "
-                "and the details of the coarser levels, up to 100,000 features (auto), those of "
-                "all levels, the coarse TIN only, or none."
+                "Which layers the pyramid file has, which is complete without them: the coarse "
+                "TIN, up to 50,000 vertices, and the details of the coarser levels, up to 80,000 "
+                "features (auto), those of all levels, the coarse TIN only, or none."
             ),
             advanced=True,
         )

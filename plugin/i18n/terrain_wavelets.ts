@@ -50,7 +50,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
-    <source>Which layers the pyramid file has, which is complete without them: the coarse TIN and the details of the coarser levels, up to 100,000 features (auto), those of all levels, the coarse TIN only, or none.</source>
+    <source>Which layers the pyramid file has, which is complete without them: the coarse TIN, up to 50,000 vertices, and the details of the coarser levels, up to 80,000 features (auto), those of all levels, the coarse TIN only, or none.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -50,8 +50,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>
-    <source>Which layers the pyramid file has, which is complete without them: the coarse TIN and the details of the coarser levels, up to 100,000 features (auto), those of all levels, the coarse TIN only, or none.</source>
-    <translation>Welche Layer die Pyramidendatei hat, die ohne sie vollständig ist: das grobe TIN und die Details der gröberen Stufen, bis 100.000 Objekte (auto), die aller Stufen, nur das grobe TIN, oder keine.</translation>
+    <source>Which layers the pyramid file has, which is complete without them: the coarse TIN, up to 50,000 vertices, and the details of the coarser levels, up to 80,000 features (auto), those of all levels, the coarse TIN only, or none.</source>
+    <translation>Welche Layer die Pyramidendatei hat, die ohne sie vollständig ist: das grobe TIN, bis 50.000 Stützpunkte, und die Details der gröberen Stufen, bis 80.000 Objekte (auto), die aller Stufen, nur das grobe TIN, oder keine.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_analysis.py"/>

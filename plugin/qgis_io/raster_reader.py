@@ -228,7 +228,7 @@ def _read_with_qgis(raster: RasterInput, feedback: QgsFeedback) -> Dem:
 
 def _with_holes(dem: Dem, raster: RasterInput) -> Dem:
     """Mark what the layer's properties hide, and whatever can be no elevation, as holes."""
-    from wavelet_gis.io.raster.nodata import tell_of_doubts, told_holes
+    from wavelet_gis.io.raster.nodata import implausible_cells, warn_of_doubts
 
     if dem.values.dtype.kind == "f":
         dem.valid[...] &= np.isfinite(dem.values)
@@ -237,8 +237,8 @@ def _with_holes(dem: Dem, raster: RasterInput) -> Dem:
         below = dem.values <= high if has_high else dem.values < high
         dem.valid[...] &= ~(above & below)
     if raster.uses_nodata:
-        dem.valid[...] &= ~told_holes(dem.values, dem.valid, raster.name)
-    tell_of_doubts(dem.values[dem.valid], raster.name)
+        dem.valid[...] &= ~implausible_cells(dem.values, dem.valid, raster.name)
+    warn_of_doubts(dem.values[dem.valid], raster.name)
     return dem
 
 

@@ -2,7 +2,7 @@
 
 Loops, dense matrices and sets; no numba and nothing from ``wavelet_core``. Equation numbers are
 those of *Graph-Based Wavelet Multiresolution Modeling of Multivariate Terrain Data*; what the
-paper leaves open follows the choices that ``docs/theory.md`` states.
+paper leaves open follows the choices that ``docs/science/theory.md`` states.
 
 Meshes are lists of vertex triples. ``points`` are normalised columns (x, y, z, attributes).
 """

@@ -46,6 +46,22 @@ def test_a_change_in_one_kernel_file_voids_the_compiled_code_of_the_others(tmp_p
             assert run_python(code, tmp_path, NUMBA_CACHE_DIR="") == f"{factor}.0"
 
 
+@pytest.mark.skipif(not _jit.HAS_NUMBA, reason="compiles kernels, and numba is off")
+def test_a_cache_that_names_a_class_that_has_gone_is_void(tmp_path):
+    """After an update that renamed a NamedTuple, kernels that took it raised AttributeError."""
+    package = tmp_path / "wavelet_core"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("Former", "Present"):
+        (package / "_kernels" / "renamed.py").write_text(
+            f"from typing import NamedTuple\nfrom ._jit import njit\n"
+            f"class {name}(NamedTuple):\n    x: float\n"
+            f"@njit\ndef read(pair):\n    return pair.x\n"
+        )
+        code = f"from wavelet_core._kernels.renamed import {name}, read; print(read({name}(2.0)))"
+        for _ in range(2):  # compiled, then from the cache
+            assert run_python(code, tmp_path, NUMBA_CACHE_DIR="") == "2.0"
+
+
 def test_without_numba_one_warning_says_so_of_an_input_of_some_size():
     code = (
         "import warnings; from wavelet_core import analyse, synthetic\n"

@@ -6,7 +6,7 @@ import numpy as np
 
 from .._kernels import connectivity as kernels
 from .._kernels.connectivity import BOUNDARY, INTERIOR, ISOLATED, PINCH
-from ..progress import tell_share
+from ..progress import report_share
 
 #: Vertices that are looked at together: a bound on the memory.
 AT_ONCE = 50_000
@@ -21,7 +21,7 @@ def fill_stars(faces, indptr, star):
 def order_rings(start, stop, faces, indptr, star, kind, ring, ring_size, bad_neighbour):
     bad_neighbour[start:stop] = -1
     for first in range(start, stop, AT_ONCE):
-        tell_share((first - start) / (stop - start))
+        report_share((first - start) / (stop - start))
         last = min(first + AT_ONCE, stop)
         v = _order_some(first, last, faces, indptr, star, kind, ring, ring_size)
         if v >= 0:  # no surface: the loop says which edge

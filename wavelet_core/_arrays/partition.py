@@ -14,7 +14,7 @@ import numpy as np
 from .._kernels.collapse import COLLINEAR_TOLERANCE, FLATNESS_TOLERANCE
 from .._kernels.connectivity import BOUNDARY, INTERIOR
 from .._kernels.partition import EVEN, ODD, ROUNDING
-from ..progress import tell_share
+from ..progress import report_share
 from ._csr import expanded
 from ._rings import by_size, rings
 from .quadric import evaluate
@@ -59,7 +59,7 @@ def label(
     is_open = np.zeros(n, dtype=bool)
     is_open[candidates] = True
     while len(open_rows):
-        tell_share(1.0 - (1.0 - OF_CHOICES) * len(open_rows) / len(candidates))
+        report_share(1.0 - (1.0 - OF_CHOICES) * len(open_rows) / len(candidates))
         open_rows = open_rows[is_open[candidates[open_rows]]]
         if len(open_rows) == 0:
             break
@@ -112,7 +112,7 @@ def _choices(candidates, in_plan, shape, points, faces, indptr, ring, ring_size,
     edges = _edges(faces, len(points))
     n_done = 0
     for size, rows in _blocks(sizes):
-        tell_share(OF_CHOICES * n_done / len(candidates))
+        report_share(OF_CHOICES * n_done / len(candidates))
         n_done += len(rows)
         v = candidates[rows]
         around = rings(v, size, indptr, ring)

@@ -65,7 +65,7 @@ def sort_groups(start, stop, indptr, others, is_new):
     is_new[1:] = (low[1:] != low[:-1]) | (others[1:] != others[:-1])
 
 
-def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_told):
+def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_asked):
     n = len(indptr) - 1
     keys = np.repeat(np.arange(n), np.diff(indptr)) * n + heads
     joined[:] = 0
@@ -76,7 +76,7 @@ def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_told)
     if len(keys):
         is_edge = keys[place] == asked
         joined[v, k] = is_edge
-        is_told[place[is_edge]] = True
+        is_asked[place[is_edge]] = True
 
 
 def gather_spokes(edges, indptr, heads, edge_of):

@@ -17,7 +17,7 @@ def corners_of(half_edge, origin, twin):
     )  # fmt: skip
 
 
-def gains_of_flips(start, stop, half_edges, tin, points, aim, error, gain):
+def gains_of_flips(start, stop, half_edges, tin, points, objective, error, gain):
     gain[:] = 0.0
     x, y, origin, twin = tin.x, tin.y, tin.mesh.origin, tin.mesh.twin
     faces = np.column_stack([half_edges // 3, twin[half_edges] // 3])
@@ -30,10 +30,10 @@ def gains_of_flips(start, stop, half_edges, tin, points, aim, error, gain):
     for part in blocks(points.n_points[faces[rows]].sum(axis=1) + 1, POINTS_AT_ONCE):
         at = rows[part]
         corners = a[at], b[at], c[at], d[at]
-        _gains(at, corners, faces[at], present[at], tin, points, aim, gain)
+        _gains(at, corners, faces[at], present[at], tin, points, objective, gain)
 
 
-def _gains(at, corners, faces, present, tin, points, aim, gain):
+def _gains(at, corners, faces, present, tin, points, objective, gain):
     a, b, c, d = corners
     x, y, z = tin.x, tin.y, tin.z
     row, side, p, px, py = _points_beside(faces, c, d, tin, points)
@@ -51,8 +51,8 @@ def _gains(at, corners, faces, present, tin, points, aim, gain):
         squared += off * off
         if i == 0:
             most = largest(row, squared * points.strictness[p], len(at))
-    new = total(row, weighed(squared, aim.is_power), len(at))
-    better = (new < present - LEAST_GAIN * present) & (most <= aim.tolerance)
+    new = total(row, weighed(squared, objective.is_power), len(at))
+    better = (new < present - LEAST_GAIN * present) & (most <= objective.tolerance)
     gain[at[better]] = (present - new)[better]
 
 

@@ -33,14 +33,14 @@ def find_side(hint, size, n_sides, ring_x, ring_y, row, x, y):
     return found
 
 
-def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, gain):
+def propose_moves(start, stop, chosen, tin, points, objective, capacity, to, shift, gain):
     to[:], gain[:], shift[:] = -1, 0.0, 0.0
     may = (tin.mesh.outgoing[chosen] >= 0) & ~tin.is_locked[chosen]
     for stars in stars_of(chosen, may, tin, points):
-        _propose(stars, tin, points.strictness, aim, to, shift, gain)
+        _propose(stars, tin, points.strictness, objective, to, shift, gain)
 
 
-def _propose(stars, tin, strictness, aim, to, shift, gain):
+def _propose(stars, tin, strictness, objective, to, shift, gain):
     n, size = stars.ring.shape
     n_sides, n_channels = stars.spoke.shape[1], tin.z.shape[1]
     row, side = stars.row, stars.side
@@ -59,8 +59,8 @@ def _propose(stars, tin, strictness, aim, to, shift, gain):
         off = at_b * z[row, side] + at_c * z[row, following] - stars.pz[:, i]
         squared += off * off
         offs.append(off)
-    present = total(row, weighed(squared, aim.is_power), n)
-    stress = squared * squared * squared if aim.is_power else 1.0
+    present = total(row, weighed(squared, objective.is_power), n)
+    stress = squared * squared * squared if objective.is_power else 1.0
     key = row * n_sides + side
     squares = total(key, stress * (weight * weight), n * n_sides).reshape(n, n_sides)
     model = np.zeros((n_channels, 9, n))
@@ -80,7 +80,7 @@ def _propose(stars, tin, strictness, aim, to, shift, gain):
     judged = (n_points > 0) & (present > 0.0)
     best = present.copy()
     stiff = model[0, 0] > 0.0
-    if aim.is_free:
+    if objective.is_free:
         for i in range(n_channels):
             ratio = model[i, 6] / np.where(stiff, model[i, 0], 1.0)
             shift[stars.rows, i] = np.where(judged & stiff, -ratio, 0.0)
@@ -89,17 +89,17 @@ def _propose(stars, tin, strictness, aim, to, shift, gain):
     moves = judged & ~tin.stays[stars.v]
     if stars.is_outline:
         moves &= is_straight(stars.x[:, 0], stars.y[:, 0], stars.x[:, -1], stars.y[:, -1])
-    q, order_of = _trials(stars, moves, model, stiff, tin, aim)
+    q, order_of = _trials(stars, moves, model, stiff, tin, objective)
     threshold = best - LEAST_GAIN * present
     for t in range(N_TRIALS):
-        _try(stars, q[order_of == t], strictness, present, threshold, aim, to, shift, gain)
+        _try(stars, q[order_of == t], strictness, present, threshold, objective, to, shift, gain)
 
 
-def _trials(stars, moves, model, stiff, tin, aim):
+def _trials(stars, moves, model, stiff, tin, objective):
     """Return the most promising points, as entries of the stars, and which each is of its star."""
     n_channels, size = len(model), stars.ring.shape[1]
     row, dx, dy = stars.row, stars.px, stars.py
-    q = moves[row] & ~(dx * dx + dy * dy > aim.reach) & (stars.p != tin.point[stars.v][row])
+    q = moves[row] & ~(dx * dx + dy * dy > objective.reach) & (stars.p != tin.point[stars.v][row])
     q = np.flatnonzero(q)
     if stars.is_outline:
         at, x, y = row[q], dx[q], dy[q]
@@ -116,7 +116,7 @@ def _trials(stars, moves, model, stiff, tin, aim):
         pull = m[1] * dx + m[2] * dy - m[6]
         expected += m[3] * dx * dx + 2.0 * (m[4] * dx * dy) + m[5] * dy * dy
         expected -= 2.0 * (m[7] * dx + m[8] * dy)
-        if aim.is_free:
+        if objective.is_free:
             ratio = pull / np.where(stiff[at], m[0], 1.0)
             expected -= np.where(stiff[at], pull * ratio, 0.0)
         else:
@@ -127,7 +127,7 @@ def _trials(stars, moves, model, stiff, tin, aim):
     return q, np.arange(len(q)) - begins
 
 
-def _try(stars, q, strictness, present, threshold, aim, to, shift, gain):
+def _try(stars, q, strictness, present, threshold, objective, to, shift, gain):
     """Lay the stars around the points ``q``, at most one each; keep what is better."""
     n_channels, size, n_sides = stars.z.shape[2], stars.ring.shape[1], stars.spoke.shape[1]
     rows = stars.row[q]
@@ -152,7 +152,7 @@ def _try(stars, q, strictness, present, threshold, aim, to, shift, gain):
     for i in range(n_channels):
         z = stars.z[rows, :, i]
         off = at_b * z[row, side] + at_c * z[row, following] - stars.pz[mine, i]
-        if aim.is_free:
+        if objective.is_free:
             rests, pulls = total(row, off * off, len(q)), total(row, weight * off, len(q))
             dz[:, i] = -(pulls / squares)
             new += rests - pulls * (pulls / squares)
@@ -161,9 +161,9 @@ def _try(stars, q, strictness, present, threshold, aim, to, shift, gain):
         squared += off * off
         if i == 0:
             most = largest(row, squared * strictness[stars.p[mine]], len(q))
-    if not aim.is_free:
-        new = total(row, weighed(squared, aim.is_power), len(q))
-    better = np.flatnonzero((new < threshold[rows]) & (most <= aim.tolerance))
+    if not objective.is_free:
+        new = total(row, weighed(squared, objective.is_power), len(q))
+    better = np.flatnonzero((new < threshold[rows]) & (most <= objective.tolerance))
     at = stars.rows[rows[better]]
     threshold[rows[better]] = new[better]
     to[at], shift[at] = stars.p[q[better]], dz[better]

@@ -23,7 +23,7 @@ def list_stars(start, stop, chosen, mesh, needs):
 
 
 def propose_removals(
-    start, stop, chosen, tin, points, aim, error, bound, capacity, with_outline, target, cost
+    start, stop, chosen, tin, points, objective, error, bound, capacity, with_outline, target, cost
 ):
     target[:], cost[:] = -1, np.inf
     may = (tin.mesh.outgoing[chosen] >= 0) & ~tin.is_locked[chosen]
@@ -42,7 +42,7 @@ def propose_removals(
             present += error[stars.spoke[:, k] // 3]
         limit = present + bound
         for j in places:
-            new, fits = _laid(stars, j, legal, tin, points, aim)
+            new, fits = _laid(stars, j, legal, tin, points, objective)
             better = np.flatnonzero(fits & (new < limit))
             limit[better] = new[better]
             target[stars.rows[better]] = j
@@ -56,7 +56,7 @@ def _fan(stars, j, tin):
     return places, stars.x[:, places] - stars.x[:, [j]], stars.y[:, places] - stars.y[:, [j]]
 
 
-def _laid(stars, j, legal, tin, points, aim):
+def _laid(stars, j, legal, tin, points, objective):
     """Return the errors of the stars under the fan around ring[j], and whether that is legal."""
     n, size = stars.ring.shape
     places, seen_x, seen_y = _fan(stars, j, tin)
@@ -83,7 +83,9 @@ def _laid(stars, j, legal, tin, points, aim):
         squared += off * off
         if i == 0:
             most = largest(row, squared * points.strictness[p], n)
-    return total(row, weighed(squared, aim.is_power), n), legal & (most <= aim.tolerance)
+    return total(row, weighed(squared, objective.is_power), n), legal & (
+        most <= objective.tolerance
+    )
 
 
 def _fan_place(side, j, size):
@@ -154,7 +156,7 @@ def _remove(stars, j, is_mine, base, tin, points, freed):
 # -- insertions -----------------------------------------------------------------------------------
 
 
-def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, height, gain):
+def propose_insertions(start, stop, faces, tin, points, objective, point, on_edge, height, gain):
     point[:], on_edge[:], gain[:], height[:] = -1, -1, 0.0, 0.0
     rows = np.flatnonzero(tin.mesh.origin[3 * faces] >= 0)
     for part in blocks(points.n_points[faces[rows]] + 1, POINTS_AT_ONCE):
@@ -162,7 +164,9 @@ def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, hei
         row, p, rank = _largest_errors(faces[at], tin, points)
         for t in range(N_INSERTIONS):
             mine = rank == t
-            _try(at[row[mine]], p[mine], faces, tin, points, aim, point, on_edge, height, gain)
+            _try(
+                at[row[mine]], p[mine], faces, tin, points, objective, point, on_edge, height, gain
+            )
 
 
 def _errors_at(face, p, tin, points):
@@ -201,7 +205,7 @@ def _largest_errors(faces, tin, points):
     return row[kept], p[kept], rank[kept]
 
 
-def _try(at, q, faces, tin, points, aim, point, on_edge, height, gain):
+def _try(at, q, faces, tin, points, objective, point, on_edge, height, gain):
     """Put a point into each of some faces; keep what gains more."""
     face, n_channels = faces[at], tin.z.shape[1]
     own, own_off = _errors_at(face, q, tin, points)
@@ -240,9 +244,9 @@ def _try(at, q, faces, tin, points, aim, point, on_edge, height, gain):
             changed = off[:, i] - weight * (surface[of, i] - points.z[q[of], i])
             after_it += changed * changed
         before_it = _squared(off)
-        change = weighed(before_it, aim.is_power) - weighed(after_it, aim.is_power)
+        change = weighed(before_it, objective.is_power) - weighed(after_it, objective.is_power)
         gained = _added(gained, of, change)
-    if aim.is_free:
+    if objective.is_free:
         gained = np.zeros(n)
         for i in range(n_channels):
             gained += pull[:, i] * (pull[:, i] / squares)
@@ -250,7 +254,7 @@ def _try(at, q, faces, tin, points, aim, point, on_edge, height, gain):
     at, q = at[better], q[better]
     point[at], on_edge[at], gain[at] = q, edge[better], gained[better]
     height[at] = points.z[q]
-    if aim.is_free:
+    if objective.is_free:
         height[at] = surface[better] - pull[better] / squares[better][:, None]
 
 

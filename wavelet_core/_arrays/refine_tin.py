@@ -100,7 +100,7 @@ def count_star_points(start, stop, chosen, tin, points, count):
     count[rows] = counts.sum(axis=1)
 
 
-def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest_z):
+def sum_face_errors(start, stop, tin, points, objective, error, squared_z, largest_z):
     corners = tin.mesh.origin.reshape(-1, 3)
     alive = np.flatnonzero(corners[:, 0] >= 0)
     error[:], squared_z[:], largest_z[:] = 0.0, 0.0, 0.0
@@ -122,7 +122,7 @@ def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest_z):
             off -= points.z[p, i]
             squared += off * off
             first = squared.copy() if i == 0 else first
-        error[faces] = total(row, weighed(squared, aim.is_power), len(faces))
+        error[faces] = total(row, weighed(squared, objective.is_power), len(faces))
         squared_z[faces] = total(row, first, len(faces))
         largest_z[faces] = largest(row, first, len(faces))
 

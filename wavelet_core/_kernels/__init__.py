@@ -1,1 +1,1 @@
-"""Numba kernels: arrays and scalars in, arrays filled. One file per caller module."""
+"""Numba kernels: arrays and scalars in, arrays filled; one file for each kind of step."""

@@ -4,7 +4,7 @@ A kernel is written as loops. With numba they are compiled; without it, its twin
 :mod:`wavelet_core._arrays` does the same on whole arrays of numpy, for which every sum is taken in
 the same order: the bytes are the same. The loops themselves, run by Python, are the oracle that
 tests hold both against; in use they run only for the two kernels without a twin, those of the
-NNLS and least squares predictions. docs/engines.md tells a user the same.
+NNLS and least squares predictions. docs/topics/engines.md tells a user the same.
 
 Squares are written as products there: Python's ``x**2`` is one of the C library's powers, which may
 be off by the last bit.
@@ -173,10 +173,11 @@ def njit(function: Callable[..., Any]) -> Any:
     except RuntimeError:  # no writable place for the cache
         return _numba.njit(nogil=True)(function)
     # Numba takes cached code for good while the file of the function itself is unchanged, though
-    # kernels of other files are compiled into it: a change in any of them must void it.
+    # kernels of other files are compiled into it: a change in any of them must void it. The version
+    # is compared before the rest of an index is unpickled, which fails on classes that have gone.
     with contextlib.suppress(AttributeError):
         index = compiled._cache._cache_file
-        index._source_stamp = (index._source_stamp, _stamp_of_all_kernels())
+        index._version = (index._version, _stamp_of_all_kernels())
     return compiled
 
 

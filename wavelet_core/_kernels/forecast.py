@@ -6,10 +6,21 @@ faces, nor the integrals. So whoever has the level has its forecasts, before it 
 
 import numpy as np
 
-from ._jit import inlined, kernel
+from ._jit import inlined, kernel, njit
 from .half_edges import MAX_RING, walk_ring
 from .outline import STAYS, outline_rule
 from .surface_cost import NONE, is_enclosed, legal_targets, place_ring
+
+
+# Room for what `targets_in_order` fills, in the order of its arguments; see surface_cost.
+@njit
+def workspace(n_channels):
+    return (
+        np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32), np.empty(MAX_RING),
+        np.empty(MAX_RING), np.empty((MAX_RING, n_channels)), np.zeros(MAX_RING, np.bool_),
+        np.empty(MAX_RING, np.int32), np.empty(MAX_RING), np.empty(MAX_RING),
+        np.empty(MAX_RING, np.int64), np.empty((2, MAX_RING)),
+    )  # fmt: skip
 
 
 # The legal targets of v, the best first: order and own_error are filled; returns their number.
@@ -43,16 +54,10 @@ def forecast_collapses(
 ):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     x, y, z = surface.x, surface.y, surface.z
-    ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
-    ring_x, ring_y, ring_z = (
-        np.empty(MAX_RING),
-        np.empty(MAX_RING),
-        np.empty((MAX_RING, z.shape[1])),
-    )
-    order, cover = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
-    own_error, distance = np.empty(MAX_RING), np.empty(MAX_RING)
-    cover_weights = np.empty((2, MAX_RING))
-    is_barred = np.zeros(MAX_RING, np.bool_)
+    (
+        ring, spoke, ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover,
+        cover_weights,
+    ) = workspace(z.shape[1])  # fmt: skip
     for q in range(start, stop):
         v = todo[q]
         n_legal = targets_in_order(
@@ -71,16 +76,10 @@ def match_targets(
 ):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     x, y, z = surface.x, surface.y, surface.z
-    ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
-    ring_x, ring_y, ring_z = (
-        np.empty(MAX_RING),
-        np.empty(MAX_RING),
-        np.empty((MAX_RING, z.shape[1])),
-    )
-    order, cover = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
-    own_error, distance = np.empty(MAX_RING), np.empty(MAX_RING)
-    cover_weights = np.empty((2, MAX_RING))
-    is_barred = np.zeros(MAX_RING, np.bool_)
+    (
+        ring, spoke, ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover,
+        cover_weights,
+    ) = workspace(z.shape[1])  # fmt: skip
     for q in range(start, stop):
         n_legal = targets_in_order(
             odd[q], origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring,

@@ -35,7 +35,7 @@ def order_nearest(start, stop, first, found, x, y, nearest, reach):
 
 
 # classes (n, m) uint8, filled: how clear it is that points are joined to those of nearest (n, m),
-# NOT_ASKED where that is not asked of this one of the two. See docs/format.md, "The input".
+# NOT_ASKED where that is not asked of this one of the two: docs/reference/format.md, "The input".
 @kernel
 def classify_pairs(start, stop, x, y, nearest, reach, classes):
     m = nearest.shape[1]
@@ -128,10 +128,10 @@ def sort_groups(start, stop, indptr, others, is_new):
 
 
 # Which pairs that are asked about are edges? indptr (n + 1,) int64, heads (k,) int32: edges by
-# their lower ends; classes, nearest (n, m); joined (n, m) uint8, filled; is_told (k,) bool, set for
-# the edges that were asked about
+# their lower ends; classes, nearest (n, m); joined (n, m) uint8, filled; is_asked (k,) bool, set
+# for the edges that were asked about
 @kernel
-def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_told):
+def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_asked):
     for v in range(start, stop):
         for k in range(nearest.shape[1]):
             joined[v, k] = 0
@@ -148,7 +148,7 @@ def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_told)
             for i in range(first, last):
                 if heads[i] == high:
                     joined[v, k] = 1
-                    is_told[i] = True
+                    is_asked[i] = True
 
 
 # edges (k, 2) int32, the lower end first, sorted; indptr (n + 1,) int64, heads, edge_of (2 k,)

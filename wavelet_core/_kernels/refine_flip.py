@@ -31,7 +31,7 @@ def corners_of(half_edge, origin, twin):
 # half_edges (k,) int32, of each edge the lower one; error (n_faces,) float64 as of sum_face_errors;
 # gain (k,) float64, filled: by how much the error falls, 0 where the edge has to stay
 @kernel
-def gains_of_flips(start, stop, half_edges, tin, points, aim, error, gain):
+def gains_of_flips(start, stop, half_edges, tin, points, objective, error, gain):
     x, y, z, origin, twin = tin.x, tin.y, tin.z, tin.mesh.origin, tin.mesh.twin
     n_channels = z.shape[1]
     slope_x, slope_y = np.empty((2, n_channels)), np.empty((2, n_channels))
@@ -71,8 +71,8 @@ def gains_of_flips(start, stop, half_edges, tin, points, aim, error, gain):
                     squared += off * off
                     if i == 0:
                         largest = max(largest, squared * points.strictness[p])
-                total += weighed(squared, aim.is_power)
-        if total < present - LEAST_GAIN * present and largest <= aim.tolerance:
+                total += weighed(squared, objective.is_power)
+        if total < present - LEAST_GAIN * present and largest <= objective.tolerance:
             gain[row] = present - total
 
 

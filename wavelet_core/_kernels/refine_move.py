@@ -13,9 +13,12 @@ from .half_edges import MAX_RING, walk_ring
 from .outline import is_straight
 from .refine_tin import is_wide, weighed
 
-#: Places that are tried at all points of the star.
+#: Places that are tried at all points of the star. On crops of two DEMs a single one leaves 0.8 to
+#: 1.4 % more RMSE at 2 % and 0.9 to 2.3 % more vertices within a tolerance; 6 change the RMSE by
+#: 0.2 % and leave 0.1 to 2.2 % fewer vertices for a quarter more time.
 N_TRIALS = 3
-#: A vertex moves only where the error of its star falls by more than this part of it.
+#: A vertex moves only where the error of its star falls by more than this part of it. With a tenth
+#: of it the RMSE at 2 % of two DEMs is the same to 0.5 %.
 LEAST_GAIN = 1e-4
 
 
@@ -48,7 +51,7 @@ def find_side(hint, size, n_sides, ring_x, ring_y, x, y):
 # or -1 to stay; shift (k, c) float64, what to add to its heights; gain (k,) float64. capacity: most
 # points of a star
 @kernel
-def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, gain):
+def propose_moves(start, stop, chosen, tin, points, objective, capacity, to, shift, gain):
     x, y, z = tin.x, tin.y, tin.z
     origin, twin, outgoing = tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing
     n_channels = z.shape[1]
@@ -99,8 +102,8 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
                     near_z[n, i] = points.z[p, i] - z[v, i]
                     off = at_b * ring_z[k, i] + at_c * ring_z[following, i] - near_z[n, i]
                     squared += off * off
-                present += weighed(squared, aim.is_power)
-                stress = squared * squared * squared if aim.is_power else 1.0
+                present += weighed(squared, objective.is_power)
+                stress = squared * squared * squared if objective.is_power else 1.0
                 squares += stress * (weight * weight)
                 for i in range(n_channels):
                     off = at_b * ring_z[k, i] + at_c * ring_z[following, i] - near_z[n, i]
@@ -121,7 +124,7 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
         if n == 0 or not present > 0.0:
             continue
         best = present
-        if aim.is_free and model[0, 0] > 0.0:
+        if objective.is_free and model[0, 0] > 0.0:
             for i in range(n_channels):
                 shift[row, i] = -(model[i, 6] / model[i, 0])
                 best -= model[i, 6] * (model[i, 6] / model[i, 0])
@@ -136,7 +139,7 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
         for q in range(n):
             dx, dy = near_x[q], near_y[q]
             distance = dx * dx + dy * dy
-            if distance > aim.reach or near[q] == tin.point[v]:
+            if distance > objective.reach or near[q] == tin.point[v]:
                 continue
             if is_outline and not is_straight(
                 ring_x[0] - dx, ring_y[0] - dy, ring_x[size - 1] - dx, ring_y[size - 1] - dy
@@ -148,7 +151,7 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
                 pull = m[1] * dx + m[2] * dy - m[6]
                 expected += m[3] * dx * dx + 2.0 * (m[4] * dx * dy) + m[5] * dy * dy
                 expected -= 2.0 * (m[7] * dx + m[8] * dy)
-                if aim.is_free:
+                if objective.is_free:
                     expected -= pull * (pull / m[0]) if m[0] > 0.0 else 0.0
                 else:
                     expected += near_z[q, i] * (m[0] * near_z[q, i] - 2.0 * pull)
@@ -187,7 +190,7 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
                 squared = 0.0
                 for i in range(n_channels):
                     off = at_b * ring_z[k, i] + at_c * ring_z[following, i] - near_z[p, i]
-                    if aim.is_free:
+                    if objective.is_free:
                         rests[i] += off * off
                         pulls[i] += weight * off
                     else:
@@ -195,13 +198,13 @@ def propose_moves(start, stop, chosen, tin, points, aim, capacity, to, shift, ga
                         squared += off * off
                         if i == 0:
                             largest = max(largest, squared * points.strictness[near[p]])
-                total += weighed(squared, aim.is_power)
+                total += weighed(squared, objective.is_power)
             for i in range(n_channels):
                 dz[i] = near_z[q, i]
-                if aim.is_free:
+                if objective.is_free:
                     dz[i] = -(pulls[i] / squares)
                     total += rests[i] - pulls[i] * (pulls[i] / squares)
-            if total < threshold and largest <= aim.tolerance:
+            if total < threshold and largest <= objective.tolerance:
                 threshold, to[row], gain[row] = total, near[q], present - total
                 for i in range(n_channels):
                     shift[row, i] = dz[i]

@@ -30,7 +30,7 @@ def list_stars(start, stop, chosen, mesh, needs):
 # error (n_faces,) float64 as of sum_face_errors; capacity: most points of a star
 @kernel
 def propose_removals(
-    start, stop, chosen, tin, points, aim, error, bound, capacity, with_outline, target, cost
+    start, stop, chosen, tin, points, objective, error, bound, capacity, with_outline, target, cost
 ):
     x, y, z = tin.x, tin.y, tin.z
     n_channels = z.shape[1]
@@ -94,10 +94,10 @@ def propose_removals(
                     squared += off * off
                     if i == 0:
                         largest = max(largest, squared * points.strictness[p])
-                total += weighed(squared, aim.is_power)
-                if total >= limit or largest > aim.tolerance:
+                total += weighed(squared, objective.is_power)
+                if total >= limit or largest > objective.tolerance:
                     break
-            if total < limit and largest <= aim.tolerance:
+            if total < limit and largest <= objective.tolerance:
                 limit = total
                 target[row], cost[row] = j, total - present
 
@@ -189,7 +189,7 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
 # For each of faces (k,) int32: the point of its list that helps most as a vertex, or -1; the
 # half-edge that it lies on, -1 inside; its height (k, c) float64; gain (k,) float64
 @kernel
-def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, height, gain):
+def propose_insertions(start, stop, faces, tin, points, objective, point, on_edge, height, gain):
     origin, twin = tin.mesh.origin, tin.mesh.twin
     n_channels = tin.z.shape[1]
     trial, trial_error = np.empty(N_INSERTIONS, np.int64), np.empty(N_INSERTIONS)
@@ -259,10 +259,12 @@ def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, hei
                         before_it += off[i] * off[i]
                         changed = off[i] - weight * (surface[i] - points.z[q, i])
                         after_it += changed * changed
-                    gained += weighed(before_it, aim.is_power) - weighed(after_it, aim.is_power)
+                    gained += weighed(before_it, objective.is_power) - weighed(
+                        after_it, objective.is_power
+                    )
                 if edge < 0:
                     break
-            if aim.is_free:
+            if objective.is_free:
                 gained = 0.0
                 for i in range(n_channels):
                     gained += pull[i] * (pull[i] / squares)
@@ -270,7 +272,7 @@ def propose_insertions(start, stop, faces, tin, points, aim, point, on_edge, hei
                 point[row], on_edge[row], gain[row] = q, edge, gained
                 for i in range(n_channels):
                     height[row, i] = points.z[q, i]
-                    if aim.is_free:
+                    if objective.is_free:
                         height[row, i] = surface[i] - pull[i] / squares
 
 

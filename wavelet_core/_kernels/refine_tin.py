@@ -51,8 +51,8 @@ class Points(NamedTuple):
     pool: NDArray[np.int32]
 
 
-class Aim(NamedTuple):
-    """What is to be small.
+class Objective(NamedTuple):
+    """What a refinement makes small.
 
     is_power : bool, the eighth power of the error, not its square
     is_free : bool, whether heights are fitted; else a vertex has those of its point
@@ -93,7 +93,7 @@ def count_star_points(start, stop, chosen, tin, points, count):
 # error, squared_z, largest (n_faces,) float64, filled: what the errors in each face count for, the
 # sum of the squares of those in height, and the largest of these
 @kernel
-def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest):
+def sum_face_errors(start, stop, tin, points, objective, error, squared_z, largest):
     x, y, z, origin = tin.x, tin.y, tin.z, tin.mesh.origin
     n_channels = z.shape[1]
     for face in range(start, stop):
@@ -117,7 +117,7 @@ def sum_face_errors(start, stop, tin, points, aim, error, squared_z, largest):
                 if i == 0:
                     total_z += squared
                     most = max(most, squared)
-            total += weighed(squared, aim.is_power)
+            total += weighed(squared, objective.is_power)
         error[face], squared_z[face], largest[face] = total, total_z, most
 
 

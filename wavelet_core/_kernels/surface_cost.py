@@ -37,7 +37,7 @@ LARGEST = 1
 TIE_SHARE = 1e-3
 # Costs closer to each other than this part of the sum of squares that they are differences of are
 # equal: some 1e5 times what rounding leaves, so that equal costs seldom fall on either side of a
-# step (see docs/surface.md).
+# step (see docs/topics/surface.md).
 RELATIVE_STEP = 2.0**-34
 # The same for sums that single-precision moments enter.
 MOMENT_STEP = 2.0**-20

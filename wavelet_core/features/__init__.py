@@ -1,1 +1,1 @@
-"""What details tell: spectra, signatures, shape."""
+"""What details show: spectra, signatures, shape."""

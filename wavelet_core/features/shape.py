@@ -113,7 +113,7 @@ class SurfaceShape:
         """
         if name not in SHAPE_NAMES:
             raise OptionError(
-                "there is no shape {given}; choose of {shapes}.",
+                "there is no shape {given}; choose one of {shapes}.",
                 "name",
                 given=repr(name),
                 shapes=", ".join(SHAPE_NAMES),

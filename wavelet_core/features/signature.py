@@ -203,5 +203,6 @@ def _log_energies(
 def _require_levels(pyramid: Pyramid) -> None:
     if pyramid.n_levels == 0:
         raise OptionError(
-            "{0} has no levels, so its vertices have no scales; analyse more.", "pyramid"
+            "{0} has no levels, so its vertices have no scales; analyse with more levels.",
+            "pyramid",
         )

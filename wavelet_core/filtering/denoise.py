@@ -18,11 +18,13 @@ from . import _weighted_sum
 from ._bounded import ROWS_AT_ONCE
 from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
-from .noise import check_sigma, noise_columns, noise_gains
-from .noise_model import OUTLIER_PASSES, ROWS_OF_RANKS, Noise, RangeOption, noise_of
+from .noise.model import Noise, RangeOption, noise_of
+from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
+from .noise.white import check_sigma, noise_columns, noise_gains
 from .undecimated import UndecimatedBank
 
-#: Scales of the details of all vertices for a level of a pyramid: they reach as far.
+#: Scales of the details of all vertices for a level of a pyramid: they reach as far. On crops of
+#: two DEMs half as many leave 0 to 1.3 % more error, and twice as many the same in twice the time.
 SCALES_PER_LEVEL = 0.5
 #: A pyramid for denoising stops where its mesh would be smaller than this.
 LEAST_VERTICES = 100
@@ -80,7 +82,7 @@ def denoise(
     outliers : bool
         Replace values that stand out of their ring before all else.
     found : dict, optional
-        Is given the :class:`~wavelet_core.filtering.noise_model.Noise` of each channel: what was
+        Is given the :class:`~wavelet_core.filtering.noise.model.Noise` of each channel: what was
         estimated, and the outliers.
 
     Returns
@@ -102,7 +104,7 @@ def denoise(
     detail at every scale, split by direction, since along a ridge or a bank there is less noise to
     be mistaken for terrain. The details d of either enter as they are and damped in two ways,
     :math:`d \exp(-(E / T)^2)`, where E is the local energy in units of the noise that reaches each
-    detail (:func:`wavelet_core.filtering.noise.noise_gains`). The result is the input plus the
+    detail (`wavelet_core.filtering.noise.white.noise_gains`). The result is the input plus the
     weighted sum of these columns F whose expected squared error, by Stein's unbiased estimate,
     is least: :math:`M b = -\sigma^2 \operatorname{div} F` with :math:`M = F^T F`, within bounds
     that neither turn a detail over nor boost it by more than a half, to be shared by the two ways.

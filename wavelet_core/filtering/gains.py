@@ -60,7 +60,7 @@ def band_gains(
     gains = {level: float(low <= size <= high) for level, size in enumerate(sizes)}
     if lengths is not None and gains and not (any(gains.values()) or is_empty_fine):
         raise OptionError(
-            "no level has details of {low:.4g} to {high:.4g}, in the unit of x and y; they are of "
+            "no level has a spacing of {low:.4g} to {high:.4g}, in the unit of x and y; theirs are "
             "{least:.4g} to {most:.4g}. Choose others, or analyse with more levels.",
             "lengths",
             low=low,

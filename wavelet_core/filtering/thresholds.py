@@ -16,12 +16,16 @@ from ..lifting.pyramid import Pyramid
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Progress, part_of, report
 from .gains import channel_index, relifted
-from .noise import channel_noise, check_sigma, deviation_of, local_energy, noise_gains
+from .noise.white import channel_noise, check_sigma, deviation_of, local_energy, noise_gains
 
-#: Thresholds in standard deviations of the noise, for strength 1.
+#: Thresholds in standard deviations of the noise, for strength 1; *our choice*. On rough terrain
+#: with little noise, 2 % of the deviation of z of crops of two DEMs, half of them leave 27 to 31 %
+#: less error, and twice as much 54 to 72 % more; "bayes", which adapts to the terrain, is the
+#: default.
 HARD_THRESHOLD = 3.0
 SOFT_THRESHOLD = 1.5
-#: Rounds of averaging over rings that a local energy is taken over.
+#: Rounds of averaging over rings that a local energy is taken over. 2 and 8 change the RMSE on the
+#: same crops by 1 %.
 LOCAL_ROUNDS = 4
 #: The kind of pyramid whose details tell noise from terrain.
 PLAIN: dict[str, Any] = {"partition": "random", "prediction": "plane"}

@@ -123,9 +123,9 @@ def analyse(
         of several side by side; by default 1, as of an input. The pyramid keeps them
         (`Pyramid.part`), so that their sum with the coefficients stays what it was.
     record : bool
-        Keep what tells the pyramid in a file (:attr:`Pyramid.told`), which takes half as much time
-        again and is otherwise worked out by whoever writes the file. There is none but for
-        ``partition="surface"`` with its own filters.
+        Keep the record by which a file describes the pyramid (:attr:`Pyramid.kept_record`), which
+        takes half as much time again and is otherwise worked out when the file is written. Only
+        ``partition="surface"`` with its own filters has one.
 
     Returns
     -------
@@ -221,7 +221,7 @@ class _Analysis:
         self._integrals = np.ones(mesh.n_vertices) if integrals is None else integrals
         self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
-        self._share_of_step = self._told = 0.0
+        self._share_of_step = self._reported = 0.0
         self._recorder: Recorder | None = None
         if is_recorded and options.is_error_guided and integrals is None:
             self._recorder = Recorder(mesh, locked, options.update, options.as_dict())
@@ -258,7 +258,7 @@ class _Analysis:
         pyramid = replace(pyramid, stop=stop)
         if self._recorder is None:
             return pyramid
-        return replace(pyramid, told=self._recorder.told(pyramid.steps, pyramid.coarse))
+        return replace(pyramid, kept_record=self._recorder.kept(pyramid.steps, pyramid.coarse))
 
     def _steps(self) -> list[Step]:
         """Partition, predict and update, each by its own rule."""
@@ -431,7 +431,7 @@ class _Analysis:
             n_now = len(self._coefficients) if n_vertices is None else n_vertices
             gone = n_input - n_now + self._share_of_step * (1.0 - EXPECTED_KEPT) * n_now
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
-        self._told = fraction = max(fraction, self._told)
+        self._reported = fraction = max(fraction, self._reported)
         report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
 
 
@@ -470,7 +470,7 @@ def _require_upright(mesh: TriangleMesh) -> None:
         face = int(np.argmax(areas <= 0))
         raise MeshError(
             "face {face} {vertices} is flipped or flat in plan (area {area:g}), so the mesh is no "
-            "TIN; turn or remove it, or use {0} 'xyz'.",
+            "TIN; reorient or remove it, or use {0} 'xyz'.",
             face,
             "signal",
             face=face,

@@ -7,7 +7,7 @@ import operator
 import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 from ..errors import OptionError, UnstableDesignWarning
 from ..partition.orderings import COSTS, QUADRICS
@@ -131,7 +131,7 @@ def _joined(name: object) -> tuple[Prediction, Update] | None:
 
 
 def refused_pair(prediction: str, update: str) -> bool:
-    """Whether the two filters are not to be used together: see docs/theory.md, Update."""
+    """Whether the two filters are not to be used together: see docs/science/theory.md, Update."""
     of_prediction = PREDICTIONS.find(prediction)
     return _may_blow_up(of_prediction, UPDATES.find(update)) and not of_prediction.equation
 
@@ -187,30 +187,17 @@ def resolve_options(
     _require_stable(of_prediction, of_update)
     targets = _whole("target_vertices", target_vertices, 3)
     largest, mean = _number("max_error", max_error), _number("max_rms", max_rms)
-    has_stop_rule = any(rule is not None for rule in (targets, largest, mean))
-    most_levels = _whole("levels", levels, 0, MAX_LEVELS)
     is_error_guided = _is_error_guided(
         of_partition.name, of_prediction.name, of_update.name, of_signal.name
     )
-    if most_levels is None and has_stop_rule:
+    most_levels = _whole("levels", levels, 0, MAX_LEVELS)
+    if most_levels is None and any(rule is not None for rule in (targets, largest, mean)):
         most_levels = MAX_LEVELS
     elif most_levels is None and not is_error_guided:
         most_levels = PAPER_LEVELS
     tolerance = _number("outline_tolerance", outline_tolerance)
     if tolerance and not is_error_guided:
-        raise OptionError(
-            "{0} is used by {1} surface with {2} barycentric, {3} minimum_norm or none and {4} z; "
-            "here they are {partition}, {prediction}, {update} and {signal}.",
-            "outline_tolerance",
-            "partition",
-            "prediction",
-            "update",
-            "signal",
-            partition=of_partition.name,
-            prediction=of_prediction.name,
-            update=of_update.name,
-            signal=of_signal.name,
-        )
+        _refuse_outline_tolerance(of_partition, of_prediction, of_update, of_signal)
     return AnalysisOptions(
         levels=most_levels,
         partition=of_partition.name,
@@ -228,6 +215,24 @@ def resolve_options(
         norm=of_norm.name,
         removal_fraction=_fraction(removal_fraction, of_norm, targets, largest),
         outline_tolerance=_or(0.0, tolerance),
+    )
+
+
+def _refuse_outline_tolerance(
+    partition: PartitionRow, prediction: Prediction, update: Update, signal: Signal
+) -> NoReturn:
+    raise OptionError(
+        "{0} needs {1} 'surface', {2} 'barycentric', {3} 'minimum_norm' or 'none' and {4} 'z'; "
+        "they are {partition!r}, {prediction!r}, {update!r} and {signal!r}.",
+        "outline_tolerance",
+        "partition",
+        "prediction",
+        "update",
+        "signal",
+        partition=partition.name,
+        prediction=prediction.name,
+        update=update.name,
+        signal=signal.name,
     )
 
 
@@ -250,7 +255,7 @@ def _require_use(partition: PartitionRow, given: Iterable[str]) -> None:
         if name not in partition.options:
             users = [row.name for row in PARTITIONS.values() if name in row.options]
             raise OptionError(
-                "{0} is used by {1} {users} only, and that is {partition} here; leave one out.",
+                "{0} is an option of {1} {users} only, and {1} is {partition}; leave one out.",
                 name,
                 "partition",
                 users=" and ".join(users),

@@ -24,7 +24,7 @@ from .update import UPDATES, update_filter
 
 if TYPE_CHECKING:
     from ..accuracy.level_errors import LevelErrors
-    from .recorded import Told
+    from .recorded import KeptRecord
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -100,8 +100,9 @@ class Pyramid:
         Where its finest level is not the input but a level of a larger pyramid.
     measured : tuple of LevelFigures or None
         Sizes and errors of every level, the coarsest first, where the analysis has measured them.
-    told : Told or None
-        What tells it in a file to whoever has its input, where the analysis was asked for it.
+    kept_record : KeptRecord or None
+        The record by which a file describes it to a reader who has its input, where the analysis
+        was asked to keep one.
 
     Examples
     --------
@@ -125,7 +126,7 @@ class Pyramid:
     stop: StopRecord | None = field(default=None, compare=False)
     part: PyramidPart | None = field(default=None, compare=False)
     measured: tuple[LevelFigures, ...] | None = field(default=None, compare=False)
-    told: Told | None = field(default=None, compare=False)
+    kept_record: KeptRecord | None = field(default=None, compare=False)
 
     @classmethod
     def from_parts(
@@ -407,7 +408,7 @@ class Pyramid:
 
     def with_parts(self, **changes: Any) -> Pyramid:
         """Return a pyramid of the same topology with other coarse coefficients or steps."""
-        return replace(self, **{"measured": None, "told": None, **changes})
+        return replace(self, **{"measured": None, "kept_record": None, **changes})
 
     # -- walks through the levels ----------------------------------------------------------------
 

@@ -32,10 +32,10 @@ from .step import Step
 
 __all__ = [
     "Frame",
+    "KeptRecord",
     "Record",
     "RecordPart",
     "Recorder",
-    "Told",
     "is_error_guided",
     "part_of",
     "pyramid_of",
@@ -45,6 +45,9 @@ __all__ = [
 #: A part begins at the first level with no more than this share of the vertices that the part
 #: before begins with: it takes some 130 bits a vertex of its own, so one or two for each of all.
 PART_SHARE = 1 / 64
+#: The coarsest level is a part of its own, without steps, with no more than this share: what the
+#: default rule leaves of terrain, 2 to 3 %, is had without working through all that lies above.
+COARSEST_SHARE = 1 / 32
 #: Pyramids of fewer vertices are in one part: they are read in a few seconds.
 LEAST_IN_PARTS = 3_000_000
 #: No part begins with fewer.
@@ -91,11 +94,11 @@ class Record(NamedTuple):
     parts: tuple[RecordPart, ...]
 
 
-class Told(NamedTuple):
+class KeptRecord(NamedTuple):
     """A record that was taken during the analysis, and what it was taken of.
 
     record : Record
-    steps, coarse : of the pyramid; of any other it tells nothing
+    steps, coarse : of the pyramid; it describes no other
     columns : bytes, digest of the input's z and attributes
     """
 
@@ -105,7 +108,7 @@ class Told(NamedTuple):
     columns: bytes
 
     def fits(self, pyramid: Pyramid, mesh: TriangleMesh) -> bool:
-        """Whether it tells that pyramid to whoever has that input."""
+        """Whether it describes that pyramid to a reader who has that input."""
         is_of_it = self.steps is pyramid.steps and self.coarse is pyramid.coarse
         return is_of_it and self.columns == _digest(_columns(mesh))
 
@@ -140,7 +143,8 @@ class Recorder:
         self._writer, self._begun = Writer(), dict[str, Any]()
         self._size = mesh.n_vertices
         self._level: RecordedLevel | None = None
-        self._next: dict[str, Any] | None = None  # a part that begins if another step follows
+        self._next: dict[str, Any] | None = None  # a part that begins at the present level
+        self._here: SurfaceLevel | None = None
         self._n_asked = 0
         self._failed = False
 
@@ -165,8 +169,18 @@ class Recorder:
             self._failed = len(step.odd) != self._n_asked  # the link condition forbade some
         else:
             self._failed = not takes(self._level, self._writer, step, self._frame.weights)
-        if _begins_part(level.n_vertices, self._size, self._mesh.n_vertices, self._manner):
-            self._next = _begin(level, level.ids, _columns(self._mesh), self._locked, self._manner)
+        self._here = level
+        if self._begins_part(PART_SHARE):
+            self._begin_next(level)
+
+    def _begins_part(self, share: float) -> bool:
+        if self._here is None:
+            return False
+        n_vertices, n_input = self._here.n_vertices, self._mesh.n_vertices
+        return _begins_part(n_vertices, self._size, n_input, self._manner, share)
+
+    def _begin_next(self, level: SurfaceLevel) -> None:
+        self._next = _begin(level, level.ids, _columns(self._mesh), self._locked, self._manner)
 
     def _begin_part(self, begun: dict[str, Any]) -> None:
         self._parts.append(RecordPart(self._writer.answers(), **self._begun))
@@ -175,12 +189,18 @@ class Recorder:
         start = _part_start(begun, plan, locked, self._frame, self._manner)
         self._level = RecordedLevel(start, self._manner)
 
-    def told(self, steps: tuple[Step, ...], coarse: FloatArray) -> Told | None:
-        """Return the record of a pyramid whose steps were kept; None where none tells it."""
+    def kept(self, steps: tuple[Step, ...], coarse: FloatArray) -> KeptRecord | None:
+        """Return the record of a pyramid whose steps were kept; None where none describes it."""
         if self._failed or not steps:
             return None
+        if self._next is None and self._here is not None and self._begins_part(COARSEST_SHARE):
+            self._begin_next(self._here)
+        if self._next is not None:
+            self._begin_part(self._next)
+            self._next = None
+        self._here = None
         parts = (*self._parts, RecordPart(self._writer.answers(), **self._begun))
-        return Told(Record(self._frame, parts), steps, coarse, _digest(_columns(self._mesh)))
+        return KeptRecord(Record(self._frame, parts), steps, coarse, _digest(_columns(self._mesh)))
 
 
 def frame_of(mesh: TriangleMesh, attribute_weights: Sequence[float]) -> Frame:
@@ -199,7 +219,7 @@ def frame_of(mesh: TriangleMesh, attribute_weights: Sequence[float]) -> Frame:
 def record_of(
     pyramid: Pyramid, mesh: TriangleMesh, progress: Progress | None = None
 ) -> Record | None:
-    """Return what tells a pyramid to whoever has its input; None where it is not told to the bit.
+    """Return the record of a pyramid for a reader who has its input; None where it is not exact.
 
     Parameters
     ----------
@@ -217,8 +237,8 @@ def record_of(
         return None
     if not np.array_equal(pyramid.faces, mesh.faces):
         return None
-    if pyramid.told is not None and pyramid.told.fits(pyramid, mesh):
-        return pyramid.told.record
+    if pyramid.kept_record is not None and pyramid.kept_record.fits(pyramid, mesh):
+        return pyramid.kept_record.record
     frame = frame_of(mesh, pyramid.parameters["attribute_weights"])
     manner = _manner(pyramid, frame)
     columns = _columns(mesh)
@@ -254,7 +274,7 @@ def pyramid_of(
     parameters: Mapping[str, Any],
     stop: StopRecord | None,
 ) -> Pyramid:
-    """Return the pyramid that a record tells.
+    """Return the pyramid that a record describes.
 
     Parameters
     ----------
@@ -466,19 +486,20 @@ def _part_bounds(pyramid: Pyramid, manner: Manner) -> tuple[int, ...]:
     """Return the levels at which parts begin, the finest first."""
     bounds = [pyramid.n_levels]
     n_input = size = pyramid.n_vertices(pyramid.n_levels)
-    for level in range(pyramid.n_levels - 1, 0, -1):
+    for level in range(pyramid.n_levels - 1, -1, -1):
         n_vertices = pyramid.n_vertices(level)
-        if _begins_part(n_vertices, size, n_input, manner):
+        share = PART_SHARE if level > 0 else COARSEST_SHARE
+        if _begins_part(n_vertices, size, n_input, manner, share):
             bounds.append(level)
             size = n_vertices
     return tuple(bounds)
 
 
-def _begins_part(n_vertices: int, size: int, n_input: int, manner: Manner) -> bool:
+def _begins_part(n_vertices: int, size: int, n_input: int, manner: Manner, share: float) -> bool:
     """Whether a part begins at a level, the one before having begun with ``size`` vertices."""
     if n_input < LEAST_IN_PARTS or manner.outline_tolerance:
         return False  # a tolerance is measured from the outline of the input
-    return LEAST_IN_PART <= n_vertices <= size * PART_SHARE
+    return LEAST_IN_PART <= n_vertices <= size * share
 
 
 def _digest(columns: FloatArray) -> bytes:

@@ -133,8 +133,8 @@ def build_connectivity(faces: NDArray[np.int32], n_vertices: int) -> Connectivit
         more = f" and {len(users) - NAMED:,} more" if len(users) > NAMED else ""
         raise MeshError(
             f"faces {users[:NAMED].tolist()}{more} share the edge {vertex}-{neighbour} in a way no "
-            "surface does (more than two of them, or of opposite orientation); remove or turn the "
-            "offending face.",
+            "surface does (more than two of them, or of opposite orientation); remove or reorient "
+            "the offending face.",
             vertex,
         )
     return Connectivity(star_indptr, star, ring, ring_size, kind)

@@ -58,16 +58,16 @@ class SortedEdges(NamedTuple):
     def are_joined(self, pairs: NearPairs) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """Return of each pair that is asked about whether it is an edge, and which edges are."""
         joined = np.empty(pairs.classes.shape, dtype=np.uint8)
-        is_told = np.zeros(len(self.heads), dtype=bool)
+        is_asked = np.zeros(len(self.heads), dtype=bool)
         run_in_ranges(
             look_up_pairs, len(joined), pairs.nearest, pairs.classes, self.indptr, self.heads,
-            joined, is_told,
+            joined, is_asked,
         )  # fmt: skip
-        return joined, is_told
+        return joined, is_asked
 
 
 def near_pairs(x: FloatArray, y: FloatArray, n_nearest: int) -> NearPairs:
-    """Return the nearest points of each of some points; docs/format.md tells what is asked.
+    """Return the nearest points of each of some points, for docs/reference/format.md, "The input".
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from .._kernels._jit import run_in_ranges
+from .._kernels._jit import Kernel, run_in_ranges
 from .._kernels.quadric import ring_costs, spread_quadrics, star_quadrics, target_costs
 from .._validate import FloatArray
 from .connectivity import Connectivity
@@ -51,18 +51,7 @@ def vertex_costs(
     points: FloatArray, quadrics: FloatArray, connectivity: Connectivity
 ) -> FloatArray:
     """Return the removal cost of every vertex (Eq. 36), 0 where it has no ordered ring."""
-    cost = np.empty(len(points))
-    run_in_ranges(
-        ring_costs,
-        len(points),
-        points,
-        quadrics,
-        connectivity.star_indptr,
-        connectivity.ring,
-        connectivity.ring_size,
-        cost,
-    )
-    return cost
+    return _costs(ring_costs, points, quadrics, connectivity)
 
 
 def collapse_costs(
@@ -73,9 +62,15 @@ def collapse_costs(
     That is the least of vᵀ Q(a) v over the neighbours a: the error by which the target of the
     collapse is chosen, instead of the sum over the ring (Eq. 36).
     """
+    return _costs(target_costs, points, quadrics, connectivity)
+
+
+def _costs(
+    costs: Kernel, points: FloatArray, quadrics: FloatArray, connectivity: Connectivity
+) -> FloatArray:
     cost = np.empty(len(points))
     run_in_ranges(
-        target_costs,
+        costs,
         len(points),
         points,
         quadrics,

@@ -123,8 +123,8 @@ def _cdt_faces(pythoncdt: Any, plan: FloatArray, edges: IntArray | None) -> IntA
     except RuntimeError as error:
         reason = str(error).splitlines()[0]
         raise MeshError(
-            f"the points cannot be triangulated ({reason}); some lie closer together than numbers "
-            "can tell apart, or far from all others: leave those out."
+            f"the points cannot be triangulated ({reason}); some lie closer together than "
+            "doubles resolve, or far from all others: leave those out."
         ) from error
     if edges is not None and len(edges):
         try:

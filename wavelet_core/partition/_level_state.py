@@ -60,7 +60,7 @@ class VertexState(NamedTuple):
         )
 
     def packed(self, slots: NDArray[np.int64], position: NDArray[np.int32]) -> VertexState:
-        """Return the state of some slots, side by side; ``position`` tells where slots went."""
+        """Return the state of some slots, side by side; ``position`` says where slots went."""
         packed = VertexState._make(array[slots] for array in self)
         target = np.where(packed.target >= 0, position[packed.target], np.int32(-1))
         return packed._replace(target=target)

@@ -45,7 +45,7 @@ from .questions import Collapses, Sight
 
 #: The costs of a level are limited by those of the cheapest vertices that it may take: by the
 #: highest cost of this part of them, one sixteenth. From a half to one sixty-fourth the RMSE
-#: changes by less than 1 % and the time from 0.92 to 1.10 (tables in docs/surface.md).
+#: changes by less than 1 % and the time from 0.92 to 1.10 (tables in docs/topics/surface.md).
 CHEAPEST_PART = 16
 #: The limit on costs is never below that of a height error of this part of the range of z, so that
 #: cheapest costs that are rounding alone do not hold up all others. *Our choice*.
@@ -54,7 +54,7 @@ NEGLIGIBLE_ERROR = 1e-9
 #: the spacing of doubles there, for the few operations between a height and its error.
 HEIGHT_STEP = 2.0**-46
 #: Arrays are packed when no more than this share of them is in use: packing after each tenth of the
-#: vertices is slower, and waiting until half have gone is no faster (docs/surface.md).
+#: vertices is slower, and waiting until half have gone is no faster (docs/topics/surface.md).
 PACKED_SHARE = 0.7
 #: What the kernels call the norms of :data:`wavelet_core.partition.registry.NORMS`.
 _NORM_CODES = {"rms": LEAST_SQUARES, "max": LARGEST}

@@ -19,10 +19,10 @@ from .questions import Collapses
 
 #: Share of the vertices that a level may take, at most, unless more cost nothing. Half of them is
 #: 1 to 6 % worse at the same size and takes 25 % less time. The comparisons that this and the
-#: numbers below rest on are in docs/surface.md, "What helped, and what did not".
+#: numbers below rest on are in docs/topics/surface.md, "What helped, and what did not".
 REMOVAL_FRACTION = 0.25
 #: Levels where neither their number nor a size or a tolerance is given. A level keeps some 85 % of
-#: the vertices that have relief, so 1 to 4 % of them are left (table in docs/surface.md).
+#: the vertices that have relief, so 1 to 4 % of them are left (table in docs/topics/surface.md).
 DEFAULT_LEVELS = 24
 #: Where a size or a tolerance says when to stop, a level takes no vertex that costs more than this
 #: many times what the cheapest ones do: cheap terrain goes first, whatever its share. Where only
@@ -123,7 +123,7 @@ class SurfaceAnalysis(NamedTuple):
 
 
 class Recorder(Protocol):
-    """Is told what an analysis does; see `wavelet_core.lifting.recorded.Recorder`."""
+    """Follows what an analysis does; see `wavelet_core.lifting.recorded.Recorder`."""
 
     def look(self, level: SurfaceLevel, collapses: Collapses) -> None:
         """See which collapses are about to be taken on a level."""

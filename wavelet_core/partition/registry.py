@@ -14,7 +14,7 @@ from ._mutable_level import SurfaceLevel
 from .error_guided import REMOVAL_FRACTION
 
 #: Share of the vertices that a level may take where the largest error is kept small at a given
-#: size: smaller steps keep it 4 to 10 % lower for a third more time (docs/surface.md).
+#: size: smaller steps keep it 4 to 10 % lower for a third more time (docs/topics/surface.md).
 MAX_NORM_REMOVAL_FRACTION = 0.1
 
 

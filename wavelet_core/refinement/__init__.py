@@ -1,1 +1,1 @@
-"""Coarse TINs bettered in rounds: places, edges and heights, with as many vertices."""
+"""Coarse TINs improved in rounds: places, edges and heights, with as many vertices."""

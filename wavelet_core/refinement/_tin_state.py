@@ -21,7 +21,7 @@ from .._kernels.refine_replace import (
     remove_vertices,
 )
 from .._kernels.refine_tin import (
-    Aim,
+    Objective,
     Points,
     Tin,
     colour_vertices,
@@ -91,9 +91,9 @@ class TinState:
     face_of : (n_points,) int64
         The face of each point, -1 for none.
     locked : (n_vertices,) bool
-    aim : Aim
+    objective : Objective
     strictness : (n_points,) float64, optional
-        By how much a squared height error counts against the tolerance of the aim; by default 1.
+        Weight of a squared height error against the tolerance of the objective; by default 1.
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class TinState:
         vertex_ids: IntArray,
         face_of: IntArray,
         locked: NDArray[np.bool_],
-        aim: Aim,
+        objective: Objective,
         strictness: FloatArray | None = None,
     ) -> None:
         mesh, n_fans = half_edges_of(faces, len(vertex_ids))
@@ -123,7 +123,7 @@ class TinState:
         pool[: len(listed)] = listed
         strict = np.ones(len(x)) if strictness is None else strictness
         self.points = Points(x, y, columns, strict, np.cumsum(count) - count, count, pool)
-        self.aim = aim
+        self.objective = objective
         self._n_used = len(listed)
         self._key = _scattered(len(vertex_ids))
         self._lives = np.ones(len(vertex_ids), dtype=bool)
@@ -150,7 +150,7 @@ class TinState:
         """Return the errors of all faces."""
         errors = FaceErrors(*(np.empty(len(self.points.first)) for _ in range(3)))
         run_in_ranges(
-            sum_face_errors, len(self.points.first), self.tin, self.points, self.aim, *errors
+            sum_face_errors, len(self.points.first), self.tin, self.points, self.objective, *errors
         )
         return errors
 
@@ -192,7 +192,16 @@ class TinState:
         to, gain = np.empty(n, dtype=np.int32), np.empty(n)
         shift = np.empty((n, self.tin.z.shape[1]))
         run_in_ranges(
-            propose_moves, n, chosen, self.tin, self.points, self.aim, capacity, to, shift, gain
+            propose_moves,
+            n,
+            chosen,
+            self.tin,
+            self.points,
+            self.objective,
+            capacity,
+            to,
+            shift,
+            gain,
         )
         moves = to >= 0
         base = self._room_for(np.where(moves, counts, 0))
@@ -215,7 +224,7 @@ class TinState:
         for _ in range(n_passes):
             gain = np.empty(len(half_edges))
             run_in_ranges(
-                gains_of_flips, len(half_edges), half_edges, self.tin, self.points, self.aim,
+                gains_of_flips, len(half_edges), half_edges, self.tin, self.points, self.objective,
                 self.face_errors().error, gain,
             )  # fmt: skip
             gains[half_edges] = gain
@@ -283,7 +292,7 @@ class TinState:
     def thin(self, budget: float = np.inf) -> int:
         """Take out vertices, the cheapest first; return how many.
 
-        Their costs sum to at most ``budget``; no tolerance of the aim is broken.
+        Their costs sum to at most ``budget``; no tolerance of the objective is broken.
         """
         spare = self._removals(np.inf, with_outline=True)
         order = np.argsort(spare.cost, kind="stable")
@@ -303,7 +312,7 @@ class TinState:
         capacity = int(counts.max(initial=0))
         target, cost = np.empty(len(vertex), dtype=np.int32), np.empty(len(vertex))
         run_in_ranges(
-            propose_removals, len(vertex), vertex, tin, self.points, self.aim,
+            propose_removals, len(vertex), vertex, tin, self.points, self.objective,
             self.face_errors().error, bound, capacity, with_outline, target, cost,
         )  # fmt: skip
         found = np.flatnonzero(target >= 0)
@@ -319,8 +328,8 @@ class TinState:
         point, on_edge = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
         height, gain = np.empty((n, self.tin.z.shape[1])), np.empty(n)
         run_in_ranges(
-            propose_insertions, n, face, self.tin, self.points, self.aim, point, on_edge, height,
-            gain,
+            propose_insertions, n, face, self.tin, self.points, self.objective, point, on_edge,
+            height, gain,
         )  # fmt: skip
         found = np.flatnonzero(point >= 0)
         return _Insertions._make(array[found] for array in (face, point, on_edge, height, gain))

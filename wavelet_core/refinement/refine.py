@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._kernels._jit import fitting_engine
-from .._kernels.refine_tin import Aim
+from .._kernels.refine_tin import Objective
 from .._validate import FloatArray, IntArray
 from ..accuracy.fitted_heights import fitted
 from ..errors import MeshError, OptionError
@@ -21,18 +21,21 @@ from ..partition.registry import NORMS
 from ..progress import Progress, report
 from ._tin_state import TinState
 
-#: Rounds at most, where their number is not given. docs/surface.md has what each of them gains.
+#: Rounds at most, where their number is not given; docs/topics/surface.md has what each gains.
 MAX_ROUNDS = 8
 #: Rounds end with the first one that lowers the error, or the number of vertices, by less than
-#: this part.
+#: this part. Twice as much ends a round or two earlier, 0.3 to 1.2 % worse, on two DEMs; half of it
+#: goes on for one more at most.
 LEAST_GAIN = 0.005
-#: A vertex may move by so many mean distances of input points in one round.
+#: A vertex may move by so many mean distances of input points in one round. Half of it and twice as
+#: much change the RMSE at 2 % by 2 % at most on two DEMs, and vertices within a tolerance by 1 %.
 REACH = 3.0
-#: Share of the vertices that are replaced in one round, at most.
+#: Share of the vertices that are replaced in one round, at most. Half of it and twice as much
+#: change the RMSE by 0.4 % at most on two DEMs.
 REPLACED_SHARE = 0.1
 #: A vertex is replaced while that costs less than this many times what its new place gains. Both
 #: are reckoned with all others as they are, which takes the cost for too high and the gain for too
-#: low: moves and flips then better both.
+#: low: moves and flips then improve both. 4 and 16 change the RMSE by 0.2 % at most on two DEMs.
 REPLACED_RATIO = 8.0
 #: Passes of flips before and after the vertices move. On three DEMs 1, 2 and 8 change the RMSE at
 #: 2 %, and the vertices within a tolerance, by less than 1 %, either way.
@@ -228,7 +231,7 @@ class _Work:
             ids,
             face_of,
             task.locked,
-            Aim(
+            Objective(
                 # within a tolerance, errors that are small rather than even leave room for removals
                 task.is_largest and task.limits is None,
                 task.is_free,
@@ -266,7 +269,9 @@ class _Work:
             n_replaced = 0
             if self._task.is_largest:
                 largest = self.rounds[-1].max_error * self._weights[0]
-                self._state.aim = self._state.aim._replace(tolerance=float(largest) ** 2)
+                self._state.objective = self._state.objective._replace(
+                    tolerance=float(largest) ** 2
+                )
             if number > 0 and not is_last:
                 n_replaced = self._state.replace(share, REPLACED_RATIO)
             self._improve(number, most, n_replaced=n_replaced)

@@ -42,7 +42,7 @@ class Console:
         self._as_json = as_json
         self._name_of = name_of
         self._notes: list[Note] = []
-        self._n_told = 0
+        self._n_shown = 0
         self._held_warnings: list[str] = []
 
     def say(self, line: str) -> None:
@@ -85,8 +85,8 @@ class Console:
             yield move
 
     @contextmanager
-    def told_once(self) -> Iterator[None]:
-        """Tell what is noted and warned of in the block, each as one line; nothing when quiet.
+    def shown_once(self) -> Iterator[None]:
+        """Show each note and warning of the block as one line; none when quiet.
 
         Warnings go to standard error, other notes to standard output. They are held until the long
         work begins or the command is done: input that is refused gets one line, which says what is
@@ -119,10 +119,10 @@ class Console:
         self._tell()
 
     def _tell(self) -> None:
-        for note in self._notes[self._n_told :]:
+        for note in self._notes[self._n_shown :]:
             if not note.is_warning:
                 self.say(note.in_words(self._name_of))
-        self._n_told = len(self._notes)
+        self._n_shown = len(self._notes)
         if not self._quiet:
             for text in self._held_warnings:
                 print(f"{PROGRAM}: warning: {text}", file=sys.stderr)

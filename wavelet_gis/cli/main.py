@@ -73,7 +73,7 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
     try:
         from wavelet_core.errors import WaveletError
 
-        with console.told_once():
+        with console.shown_once():
             chosen.run(chosen, console)
         interrupts.ending()
         sys.stdout.flush()

@@ -34,9 +34,9 @@ def agreed(names: Sequence[str], places: Sequence[Georeference]) -> Georeference
                 "is a mistake, give the CRS of all with {0}.",
                 "crs",
                 name=name,
-                here=_told(place),
+                here=_described(place),
                 first=names[0],
-                there=_told(first),
+                there=_described(first),
             )
         if first.vertical_unit != place.vertical_unit:
             raise InputFileError(
@@ -51,7 +51,7 @@ def agreed(names: Sequence[str], places: Sequence[Georeference]) -> Georeference
     return first
 
 
-def _told(place: Georeference) -> str:
+def _described(place: Georeference) -> str:
     return coordinate_system(place.wkt).name if place.wkt else "not told"
 
 

@@ -116,7 +116,7 @@ class CoordinateSystem:
 
 
 class Georeference(NamedTuple):
-    """What a file tells of its coordinates.
+    """What a file says of its coordinates.
 
     wkt : str or None
         Of the CRS.
@@ -289,7 +289,7 @@ def working_frame(
 
 
 def assumed_vertical_unit(system: CoordinateSystem) -> str:
-    """Return the unit of z where nothing tells it.
+    """Return the unit of z where nothing gives it.
 
     Parameters
     ----------
@@ -361,7 +361,7 @@ def _check_span(degrees: NDArray[np.float64]) -> None:
     if max(abs(south), abs(north)) > 90.0 + 1e-6 or max(abs(west), abs(east)) > 540.0:
         raise CrsError(
             "the CRS is geographic but x runs from {west:g} to {east:g} and y from {south:g} to "
-            "{north:g}, which are no degrees; give the right CRS with {0}.",
+            "{north:g}, which are not degrees; give the right CRS with {0}.",
             "crs",
             west=west,
             east=east,

@@ -146,13 +146,13 @@ def _from_keys(keys: dict[int, int], faults: list[str], notes: list[str]) -> CRS
     if not is_plan:
         faults.append(f"EPSG:{code} of its GeoTIFF keys is {crs.name}, no horizontal CRS")
         return None
-    _tell_of_unit(keys, crs, code, notes)
+    _note_unit(keys, crs, code, notes)
     if crs.is_compound or len(crs.axis_info) > 2:
         return crs
     return _with_height(crs, keys, notes)
 
 
-def _tell_of_unit(keys: dict[int, int], crs: CRS, code: int, notes: list[str]) -> None:
+def _note_unit(keys: dict[int, int], crs: CRS, code: int, notes: list[str]) -> None:
     """Say so where the keys have another unit of x and y than the CRS that they name."""
     told = _METRES.get(keys.get(_PROJECTED_UNIT, 0))
     if told is None or not crs.is_projected or not crs.axis_info:

@@ -43,20 +43,19 @@ def plane_for(system: CoordinateSystem, xy: FloatArray, to_crs: str = AUTO) -> C
     """
     if system.wkt is None or system.kind == "unknown":
         raise CrsError(
-            "the input has no CRS that could be changed for another; give it with {0}, or leave "
-            "{1} out.",
+            "the input has no CRS to transform from; give it with {0}, or leave {1} out.",
             "crs",
             "to_crs",
         )
     if find_spec("pyproj") is None:
         raise MissingDependencyError(
-            "coordinates go to another CRS by pyproj; install it with 'pip install pyproj', or "
+            "transforming coordinates needs pyproj; install it with 'pip install pyproj', or "
             "give input in a projected CRS."
         )
     if to_crs.lower() != AUTO:
         plane = coordinate_system(to_crs)
         if plane.kind != "projected":
-            raise CrsError(f"the CRS {to_crs!r} has no plane; give a projected one.")
+            raise CrsError(f"the CRS {to_crs!r} is not projected; give one that is.")
         return plane
     x, y = (xy.min(axis=0) + xy.max(axis=0)) / 2
     longitude, latitude = _degrees(system, float(x), float(y))
@@ -79,7 +78,7 @@ def projected(
     east, north = transformer.transform(x, y)
     if not (np.isfinite(east).all() and np.isfinite(north).all()):
         raise CrsError(
-            "some points have no place in {crs}; give another CRS with {0}.",
+            "some points cannot be transformed to {crs}; give another CRS with {0}.",
             "to_crs",
             crs=plane.name,
         )
@@ -117,7 +116,7 @@ def _degrees(system: CoordinateSystem, x: float, y: float) -> tuple[float, float
     to_degrees = float(np.degrees(geographic.axis_info[0].unit_conversion_factor))
     longitude = (east * to_degrees + 180.0) % 360.0 - 180.0
     if not np.isfinite([longitude, north]).all():
-        raise CrsError("the data have no place on the earth; check their CRS.")
+        raise CrsError("the coordinates cannot be placed on the earth; check their CRS.")
     return float(longitude), float(north * to_degrees)
 
 

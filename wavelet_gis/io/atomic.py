@@ -92,7 +92,7 @@ def check_output(
         raise OutputFileError(f"{place.parent}: there is no such folder; create it first.")
     if target.suffix.lower() == ".gpkg" and len(os.fsencode(place.absolute())) > MAX_DATABASE_NAME:
         raise OutputFileError(
-            f"{target.name}: SQLite opens no file by a path of more than {MAX_DATABASE_NAME} "
+            f"{target.name}: SQLite cannot open a path of more than {MAX_DATABASE_NAME} "
             "bytes; choose a shorter one."
         )
     refuse_companions(place, overwrite=overwrite)
@@ -221,11 +221,11 @@ def _exists(target: Path) -> bool:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise OutputFileError(
-            f"{str(target)[:200]!a}: the system takes no such name ({reason}); choose another."
+            f"{str(target)[:200]!a}: the system refuses this name ({reason}); choose another."
         ) from error
     if not is_utf8(target):
         raise OutputFileError(
-            f"{str(target)!a}: the name is no UTF-8, which GDAL cannot write; choose another."
+            f"{str(target)!a}: the name is not UTF-8, which GDAL cannot write; choose another."
         )
     if stat.S_ISDIR(mode):
         raise OutputFileError(f"{target}: this is a folder; name a file in it.")
@@ -298,7 +298,7 @@ def _settle(scratch: Path, made: list[Path], place: Path, *, overwrite: bool) ->
         if not os.path.lexists(final) or final in stale or is_ours(final, place):
             continue
         if final.suffix == ".prj":
-            _tell_of_prj(file, final, place)
+            _warn_of_prj(file, final, place)
             del finals[file]
         else:
             raise OutputFileError(_EXISTS, "overwrite", path=final)
@@ -329,7 +329,7 @@ def _settle(scratch: Path, made: list[Path], place: Path, *, overwrite: bool) ->
     _sync_folder(place.parent)
 
 
-def _tell_of_prj(made: Path, final: Path, place: Path) -> None:
+def _warn_of_prj(made: Path, final: Path, place: Path) -> None:
     text = made.read_text("utf-8", errors="replace")
     name = re.search(r'\["([^"]*)"', text)
     code = re.search(r'(?:AUTHORITY|ID)\["(\w+)",\s*"?(\w+)"?\]\]\s*$', text)

@@ -202,7 +202,7 @@ def open_untrusted(
         raise InputFileError(f"{name}: this is a pipe or a device; give a pyramid file.")
     if len(os.fsencode(os.path.abspath(name))) > MAX_DATABASE_NAME:
         raise InputFileError(
-            f"{os.path.basename(name)}: SQLite opens no file by a path of more than "
+            f"{os.path.basename(name)}: SQLite cannot open a path of more than "
             f"{MAX_DATABASE_NAME} bytes; move it to a folder nearer to the root."
         )
     uri = "file:" + quote(os.fsencode(Path(name).absolute())) + "?mode=ro"
@@ -250,7 +250,7 @@ def is_system_fault(error: BaseException) -> bool:
     Parameters
     ----------
     error : exception
-        That `open_stranger` raised.
+        That opening or reading it raised.
     """
     return error.__cause__ is not None and _system_fault(error.__cause__) is not None
 

@@ -23,9 +23,9 @@ __all__ = [
     "files_of",
     "gdal_path",
     "is_utf8",
+    "joint_name",
     "plain_folder",
     "readable",
-    "told_as_one",
 ]
 
 #: Longest path, in bytes, that SQLite opens with room for its ``-journal``; its own limit is 512.
@@ -117,12 +117,12 @@ def _in_folder(name: str) -> list[str]:
     return clouds or rasters
 
 
-def told_as_one(files: Sequence[str]) -> str:
-    """Return the name of several files for messages.
+def joint_name(files: Sequence[str]) -> str:
+    """Return the one name by which messages call several files.
 
     Examples
     --------
-    >>> told_as_one(["a.laz"]), told_as_one(["a.laz", "b.laz", "c.laz"])
+    >>> joint_name(["a.laz"]), joint_name(["a.laz", "b.laz", "c.laz"])
     ('a.laz', 'a.laz and 2 more')
     """
     return files[0] if len(files) == 1 else f"{files[0]} and {len(files) - 1} more"
@@ -144,7 +144,7 @@ def gdal_path(name: str | os.PathLike[str]) -> Path | str:
         return text
     if not is_utf8(text):
         raise InputFileError(
-            f"{text!a}: the name is no UTF-8, which GDAL cannot open; rename the file."
+            f"{text!a}: the name is not valid UTF-8, which GDAL cannot open; rename the file."
         )
     # Under a locale without UTF-8 Python holds such names as undecoded bytes.
     return Path(os.fsencode(os.path.join(os.getcwd(), text)).decode("utf-8"))

@@ -92,7 +92,7 @@ def require_sound_file(
         name = target or path
         raise OutputFileError(
             f"{name}: what was written does not read back as it should ({error}), so it was "
-            f"thrown away; {room_at(os.path.dirname(os.path.abspath(name)))}."
+            f"discarded; {room_at(os.path.dirname(os.path.abspath(name)))}."
         ) from error
 
 
@@ -146,7 +146,7 @@ class _Recorded:
         if size != self._size:
             raise OutputFileError(f"{size} bytes are there of {self._size}")
         if checksum != self._checksum:
-            raise OutputFileError("its bytes are others than those written")
+            raise OutputFileError("its bytes differ from those written")
 
 
 def room_at(folder: str | os.PathLike[str]) -> str:

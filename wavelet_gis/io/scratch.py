@@ -20,7 +20,7 @@ from wavelet_gis.notes import warn
 #: None on Windows, which does not remove what is open.
 _fcntl: Any = importlib.import_module("fcntl") if os.name == "posix" else None
 
-__all__ = ["scratch_folder", "sweep"]
+__all__ = ["scratch_folder", "sweep", "sweep_own"]
 
 #: Seconds after which a folder that nobody holds is taken for the remains of a killed run.
 ABANDONED_AFTER = 86_400
@@ -84,6 +84,19 @@ def sweep(folder: Path) -> None:
             folder=os.fspath(folder),
             runs=f"{swept} earlier run{'s' * (swept != 1)}",
         )
+
+
+def sweep_own(folder: Path) -> None:
+    """Remove the scratch folders that nobody holds, however new, of a folder that is all ours."""
+    try:
+        remains = [Path(entry.path) for entry in os.scandir(folder) if _is_scratch(entry)]
+    except OSError:
+        return
+    for path in remains:
+        held = _hold(path)
+        if held is not None:
+            shutil.rmtree(path, ignore_errors=True)
+            os.close(held)
 
 
 def _is_scratch(entry: os.DirEntry[str]) -> bool:

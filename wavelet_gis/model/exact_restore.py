@@ -40,6 +40,7 @@ __all__ = [
     "kept_column",
     "nearest_of_dtype",
     "number_dtype",
+    "require_checksum",
 ]
 
 #: What pyramid files call the corrections: a name of before, kept so that those files are read.
@@ -291,6 +292,28 @@ def checksum(columns: Iterable[NDArray[Any]]) -> str:
         little = np.ascontiguousarray(column, dtype=column.dtype.newbyteorder("<"))
         digest.update(little.reshape(-1).view(np.uint8).data)
     return digest.hexdigest()
+
+
+def require_checksum(columns: Iterable[NDArray[Any]], due: str) -> None:
+    """Refuse columns that are not those of which a checksum was kept.
+
+    Parameters
+    ----------
+    columns : iterable of ndarray
+        As reconstructed.
+    due : str
+        The `checksum` of the original ones.
+
+    Raises
+    ------
+    PyramidError
+        When theirs is another.
+    """
+    if checksum(columns) != due:
+        raise PyramidError(
+            "the reconstruction is not bit for bit the original (its checksum differs); the file "
+            "is damaged, analyse the input anew."
+        )
 
 
 def _quantum(

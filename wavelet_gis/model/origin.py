@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
 from wavelet_gis.crs.frame import LocalFrame
-from wavelet_gis.model.dem import Dem, InputGrid, RasterOrigin
+from wavelet_gis.model.dem import Dem, InputGrid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.points.origin import CloudOrigin
+from wavelet_gis.model.raster_origin import RasterOrigin
 
 __all__ = ["ORIGINS", "Origin", "Original", "origin_from_parts"]
 

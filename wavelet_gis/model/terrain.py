@@ -17,12 +17,13 @@ from wavelet_gis.crs.frame import (
     working_frame,
 )
 from wavelet_gis.errors import CrsError, CrsWarning, InputFileError, UnitWarning
-from wavelet_gis.model.dem import Dem, RasterOrigin, dem_mesh, grid_bounds, require_sound
+from wavelet_gis.model.dem import Dem, dem_mesh, grid_bounds, require_sound
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.origin import Origin, Original
 from wavelet_gis.model.points.cloud import PointCloud, cloud_bounds
 from wavelet_gis.model.points.mesh import cloud_mesh
+from wavelet_gis.model.raster_origin import RasterOrigin
 from wavelet_gis.notes import Note, collected, note, warn
 
 __all__ = [
@@ -286,7 +287,7 @@ def frame_of_bounds(
     Warns
     -----
     CrsWarning, UnitWarning
-        As `wavelet_gis.workflows.open.open_terrain` tells.
+        As `wavelet_gis.workflows.opening.raster_or_cloud.open_terrain` tells.
     """
     try:
         frame = working_frame(system, bounds, vertical_unit)
@@ -331,8 +332,8 @@ def frame_of_bounds(
         warn(
             UnitWarning,
             "vertical_unit_assumed",
-            "{name}: x and y are in units of {metres:g} m and nothing tells the unit of z; it is "
-            "taken for the metre ({0} names another)",
+            "{name}: x and y are in units of {metres:g} m and nothing gives the unit of z; metres "
+            "are assumed ({0} names another)",
             "vertical_unit",
             stacklevel=3,
             name=name,

@@ -232,7 +232,7 @@ def frame_of_coordinates(
     """
     if len(coordinates) == 0:
         raise MeshError(
-            f"{name}: there is not one point; check the layer, its filter and its selection."
+            f"{name}: there are no points; check the layer, its filter and its selection."
         )
     low, high = coordinates.min(axis=0), coordinates.max(axis=0)
     return frame_of_bounds(name, system, (low[0], low[1], high[0], high[1]), vertical_unit)
@@ -272,7 +272,7 @@ def terrain_of_points(
     """
     if not (np.isfinite(points).all() and np.isfinite(attributes).all()):
         raise InputFileError(
-            f"{name}: some coordinates or attributes are no finite numbers; leave those points out."
+            f"{name}: some coordinates or attributes are not finite; leave those points out."
         )
     _require_coordinates(name, points, "point")
     with collected() as notes:
@@ -320,7 +320,7 @@ def terrain_of_triangles(
 
 
 def _require_coordinates(name: str, coordinates: FloatArray, what: str) -> None:
-    """Refuse coordinates that are no finite numbers, or that no CRS has, before work begins."""
+    """Refuse coordinates that are not finite, or that no CRS has, before work begins."""
     with np.errstate(invalid="ignore"):
         is_sound = np.abs(coordinates) <= [
             LARGEST_COORDINATE,

@@ -33,12 +33,15 @@ __all__ = [
     "tin_layers",
 ]
 
-#: Vector layers of a pyramid file: coarse TIN and all details; those of the coarser levels only, in
-#: proportion; the coarse TIN alone; or none.
+#: Vector layers of a pyramid file: in proportion, the coarse TIN unless it is large and the details
+#: of the coarser levels; coarse TIN and all details; the coarse TIN alone; or none.
 Layers = Literal["auto", "all", "coarse", "none"]
 
-#: Features that "auto" may write: what QGIS shows at once. The coarse TIN is always among them.
-MOST_FEATURES = 100_000
+#: Features that "auto" may write: what QGIS shows at once, in some 10 MB where all are points.
+MOST_FEATURES = 80_000
+#: The coarse TIN and its vertices are layers in "auto" as long as they have at most so many
+#: features, whatever is left for details: those of 50,000 vertices, in some 35 MB.
+MOST_COARSE_FEATURES = 150_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +91,16 @@ def pyramid_layers(geo: GeoPyramid, layers: str = "auto") -> Iterator[Layer]:
     check_layers(layers)
     if layers == "none":
         return
-    yield from coarse_layers(geo)
+    if _has_coarse(geo, layers):
+        yield from coarse_layers(geo)
+    else:
+        note(
+            "coarse_layers_left_out",
+            "the coarse TIN, {n_features:,} triangles, is no layer, to keep the file small; "
+            "extract takes it out of the pyramid, and {0} coarse writes it into the file",
+            "layers",
+            n_features=geo.pyramid.n_faces(0),
+        )
     n_levels = _n_details(geo, layers)
     if n_levels:
         yield from islice(detail_layers(geo), n_levels)
@@ -109,7 +121,16 @@ def n_features(geo: GeoPyramid, layers: str) -> int:
     """Return how many features those layers have that `pyramid_layers` yields."""
     if layers == "none":
         return 0
-    return geo.pyramid.n_vertices(_n_details(geo, layers)) + geo.pyramid.n_faces(0)
+    n_details = sum(step.n_odd for step in geo.pyramid.steps[: _n_details(geo, layers)])
+    return n_details + (_n_coarse(geo) if _has_coarse(geo, layers) else 0)
+
+
+def _n_coarse(geo: GeoPyramid) -> int:
+    return geo.pyramid.n_vertices(0) + geo.pyramid.n_faces(0)
+
+
+def _has_coarse(geo: GeoPyramid, layers: str) -> bool:
+    return layers != "auto" or _n_coarse(geo) <= MOST_COARSE_FEATURES
 
 
 def _n_details(geo: GeoPyramid, layers: str) -> int:
@@ -133,7 +154,7 @@ def check_layers(layers: str) -> None:
 def shown_details(geo: GeoPyramid) -> int:
     """Return of how many levels, from the coarsest on, the details are layers by themselves."""
     pyramid = geo.pyramid
-    n_features = pyramid.n_vertices(0) + pyramid.n_faces(0)
+    n_features = _n_coarse(geo) if _has_coarse(geo, "auto") else 0
     for level, step in enumerate(pyramid.steps):
         n_features += step.n_odd
         if n_features > MOST_FEATURES:

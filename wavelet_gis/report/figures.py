@@ -57,7 +57,7 @@ def report_data(
     levels: Sequence[int] | None = None,
     progress: Progress | None = None,
 ) -> ReportData:
-    """Return everything that a quality report tells.
+    """Return everything that a quality report shows.
 
     Parameters
     ----------

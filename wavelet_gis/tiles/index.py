@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.geopackage import check_database, check_rows
-from wavelet_gis.io.read_back import read_back
+from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.tiles.piece import PIECES, read_record
 from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
@@ -74,6 +74,12 @@ class TileIndex:
             stage += 1
         return stage, below
 
+    def level_of(self, piece: Piece, level: int) -> int:
+        """Return the level of the whole that a level of a piece is."""
+        coarser = sum(self.levels_of(k) for k in range(piece.stage + 1, self.plan.n_stages))
+        n_levels = int(self.records[piece]["n_levels"])
+        return coarser + self.levels_of(piece.stage) - (n_levels - level)
+
 
 def is_index(path: str | os.PathLike[str]) -> bool:
     """Return whether a file is the index of a tile set."""
@@ -98,17 +104,18 @@ def open_index(path: str | os.PathLike[str]) -> TileIndex:
             f"{path}: there is no tile set here ({PLAN} cannot be read); name its {INDEX}."
         ) from error
     plan = TilePlan.from_json(text, str(folder / PLAN))
-    records = {}
+    checksum, records = plan.checksum, {}
     for stage in range(plan.n_stages):
         for piece in plan.pieces(stage):
             record = read_record(folder, piece)
-            if record is not None and record.get("plan") == plan.checksum:
+            if record is not None and record.get("plan") == checksum:
                 records[piece] = record
     return TileIndex(folder, plan, records)
 
 
 def write_index(index: TileIndex) -> None:
     """Write the GeoPackage of a tile set: the layer ``tiles``, one footprint a piece."""
+    from pyogrio.errors import DataLayerError, DataSourceError, FeatureError
     from pyogrio.raw import write
 
     pieces = list(index.records)
@@ -136,16 +143,22 @@ def write_index(index: TileIndex) -> None:
     }
     geometry = np.array([_footprint(index.plan, piece) for piece in pieces], object)
     with new_file(index.folder / INDEX, overwrite=True) as scratch:
-        write(
-            os.fspath(scratch),
-            geometry,
-            list(fields.values()),
-            list(fields),
-            layer="tiles",
-            driver="GPKG",
-            geometry_type="Polygon",
-            crs=index.plan.coordinate_system.wkt,
-        )
+        try:
+            write(
+                os.fspath(scratch),
+                geometry,
+                list(fields.values()),
+                list(fields),
+                layer="tiles",
+                driver="GPKG",
+                geometry_type="Polygon",
+                crs=index.plan.coordinate_system.wkt,
+            )
+        except (DataSourceError, DataLayerError, FeatureError) as error:
+            raise OutputFileError(
+                f"{index.folder / INDEX}: the index cannot be written, the pieces are there; "
+                f"{room_at(index.folder)}."
+            ) from error
         read_back(scratch, check_database)
         read_back(scratch, partial(check_rows, n_rows={"tiles": len(pieces)}))
 

@@ -26,9 +26,10 @@ from wavelet_core import analyse as core_analyse
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_bytes, write_text
-from wavelet_gis.model.dem import Dem, GridGeometry, RasterOrigin, dem_mesh
+from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.model.raster_origin import RasterOrigin
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected
 from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
@@ -127,7 +128,7 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
                     write_pyramid_file(scratch, geo, "none")
                 record |= {"status": "whole", **_figures(geo), "sha256": sha256_of(place)}
                 record["n_bytes"] = place.stat().st_size
-    except WaveletError as error:
+    except (WaveletError, OSError) as error:  # a full disk, of whatever kind
         record |= {"status": "failed", "reason": " ".join(str(error).split())}
     record["seconds"] = round(perf_counter() - began, 3)
     with new_file(place.with_suffix(".json"), overwrite=True) as scratch:
@@ -220,7 +221,7 @@ def join(
     # A cell that several pieces have was given the integral 1 in each, and counts once.
     counted = np.bincount(place, np.concatenate(integrals)) - (np.bincount(place) - 1.0)
     rows, columns = np.divmod(unique, plan.shape[1])
-    x, y = plan.geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
+    x, y = plan.places(rows, columns)
     frame = plan.local_frame
     vertices = np.column_stack([frame.local_x(x), frame.local_y(y), signal[first, 0]])
     return Joined(vertices, faces, unique, counted, signal[first, 1:], meshes[0].attribute_names)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
-from wavelet_gis.io.names import files_of, gdal_path, told_as_one
+from wavelet_gis.io.names import files_of, gdal_path, joint_name
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.terrain import frame_of_bounds
 
@@ -155,6 +156,19 @@ class TilePlan:
         """The grid of all cells."""
         return GridGeometry(self.shape, self.transform)  # type: ignore[arg-type]
 
+    def places(self, rows: np.ndarray, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return x and y of cells; those of points to the bit as the cloud has them.
+
+        A face of three points on one line may be so thin by rounding alone that other rounding
+        turns it over.
+        """
+        if self.points is None:
+            return self.geometry.centres(columns.astype(np.float64), rows.astype(np.float64))
+        (first_row, first_column), scales = self.points.first, self.points.scales
+        x = (columns + first_column) * scales[0] + self.points.offsets[0]
+        y = (rows + first_row) * scales[1] + self.points.offsets[1]
+        return x, y
+
     @property
     def coordinate_system(self) -> CoordinateSystem:
         """The CRS of all."""
@@ -173,20 +187,50 @@ class TilePlan:
 
     def pieces(self, stage: int) -> list[Piece]:
         """Return the pieces of a stage, row by row."""
-        n_rows, n_columns = (
-            -(-(len(ends) - 1) // (1 << stage)) for ends in (self.rows, self.columns)
-        )
+        n_rows, n_columns = self._size(stage)
         return [Piece(stage, row, column) for row in range(n_rows) for column in range(n_columns)]
+
+    def _size(self, stage: int) -> tuple[int, int]:
+        """Return the rows and columns of pieces that a stage has."""
+        rows, columns = len(self.rows) - 1, len(self.columns) - 1
+        return -(-rows // (1 << stage)), -(-columns // (1 << stage))
+
+    def inputs_of(self, piece: Piece) -> list[int]:
+        """Return the numbers of the files that may have cells of a tile, or points near it."""
+        top, left, bottom, right = self.cells(piece)
+        in_rows, in_columns = self._reach()
+        return [
+            number
+            for number, file in enumerate(self.files)
+            if file.row <= bottom + in_rows
+            and file.row + file.height > top - in_rows
+            and file.column <= right + in_columns
+            and file.column + file.width > left - in_columns
+        ]
+
+    def inputs_of_tiles(self) -> dict[Piece, list[int]]:
+        """Return `inputs_of` all tiles, without asking each file for each tile."""
+        found: dict[Piece, list[int]] = {piece: [] for piece in self.pieces(0)}
+        in_rows, in_columns = self._reach()
+        for number, file in enumerate(self.files):
+            rows = _tiles_along(self.rows, file.row, file.height, in_rows)
+            columns = _tiles_along(self.columns, file.column, file.width, in_columns)
+            for row in rows:
+                for column in columns:
+                    found[Piece(0, row, column)].append(number)
+        return found
+
+    def _reach(self) -> tuple[int, int]:
+        return (0, 0) if self.points is None else self.points.reach_in_cells
 
     def parts(self, piece: Piece) -> list[Piece]:
         """Return the pieces of the stage before that a group is made of."""
-        wanted = [
-            Piece(piece.stage - 1, 2 * piece.row + i, 2 * piece.column + j)
-            for i in (0, 1)
-            for j in (0, 1)
+        n_rows, n_columns = self._size(piece.stage - 1)
+        return [
+            Piece(piece.stage - 1, row, column)
+            for row in range(2 * piece.row, min(2 * piece.row + 2, n_rows))
+            for column in range(2 * piece.column, min(2 * piece.column + 2, n_columns))
         ]
-        there = set(self.pieces(piece.stage - 1))
-        return [part for part in wanted if part in there]
 
     def cells(self, piece: Piece) -> tuple[int, int, int, int]:
         """Return first row, first column, last row and last column of a piece, all in it."""
@@ -199,7 +243,7 @@ class TilePlan:
     def is_shared(self, piece: Piece, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
         """Return which cells lie on a border line with a neighbour, or, of points, within reach."""
         top, left, bottom, right = self.cells(piece)
-        reach = (0, 0) if self.points is None else self.points.reach_in_cells
+        reach = self._reach()
         shared: np.ndarray = np.zeros(len(rows), dtype=bool)
         for at, ends, last, within in (
             (rows, (top, bottom), self.rows[-1], reach[0]),
@@ -222,7 +266,7 @@ class TilePlan:
     @property
     def checksum(self) -> str:
         """SHA-256 of the plan without the files, which each tile is asked for itself."""
-        fields = json.loads(self.to_json())
+        fields = json.loads(replace(self, files=()).to_json())
         fields.pop("files")
         return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()
 
@@ -343,7 +387,7 @@ def plan_of_rasters(
     shape = (int(high[0] - low[0]), int(high[1] - low[1]))
     geometry = GridGeometry(shape, tuple(map(float, transform)))  # type: ignore[arg-type]
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
-    name = told_as_one(paths)
+    name = joint_name(paths)
     frame, unit = frame_of_bounds(
         name, system, grid_bounds(geometry), vertical_unit or place.vertical_unit
     )
@@ -382,6 +426,13 @@ def ends_of_tiles(n_cells: int, tile: float) -> tuple[int, ...]:
     """Return the cells where tiles of about equal size begin and end."""
     n_tiles = max(round((n_cells - 1) / tile), 1)
     return tuple(round(k * (n_cells - 1) / n_tiles) for k in range(n_tiles + 1))
+
+
+def _tiles_along(ends: tuple[int, ...], first: int, length: int, reach: int) -> range:
+    """Return the tiles that a file reaches, of a row or a column of them."""
+    low = bisect_left(ends, first - reach, 1) - 1
+    high = bisect_right(ends, first + length - 1 + reach, 0, len(ends) - 1)
+    return range(low, high)
 
 
 def _lattice(stored: Fields) -> PointLattice:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
@@ -14,18 +15,18 @@ from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.tiles.area import Box, area_of
 from wavelet_gis.tiles.index import TileIndex, open_index
 from wavelet_gis.tiles.piece import join
-from wavelet_gis.tiles.plan import Piece, TilePlan
-from wavelet_gis.workflows.extract import Surface
+from wavelet_gis.tiles.plan import Piece
+from wavelet_gis.tiles.within import pieces_within
+from wavelet_gis.workflows.extract import Surface, SurfaceErrors
 
 __all__ = ["Region", "extract_region", "restored_raster"]
 
-Box = tuple[float, float, float, float]
-
 
 class Region(NamedTuple):
-    """A part of a tile set at one level.
+    """A part of a tile set at one level, or within a tolerance.
 
     surface : Surface
         The TIN.
@@ -38,66 +39,102 @@ class Region(NamedTuple):
 
 
 def extract_region(
-    index: str | os.PathLike[str] | TileIndex, *, level: int = 0, bbox: Box | None = None
+    index: str | os.PathLike[str] | TileIndex,
+    *,
+    level: int | None = None,
+    max_error: float | None = None,
+    bbox: Box | None = None,
+    polygon: Any = None,
 ) -> Region:
-    """Return a region of a tile set at a level; only the pieces that it needs are read.
+    """Return a region of a tile set at a level, or as coarse as a tolerance allows.
+
+    Only the pieces that it needs are read.
 
     Parameters
     ----------
     index : path or TileIndex
         ``index.gpkg`` of a tile set, or its folder.
-    level : int
-        0 is the coarsest of the whole, `TileIndex.n_levels` the input.
+    level : int, optional
+        0, the default, is the coarsest of the whole, `TileIndex.n_levels` the input.
+    max_error : float, optional
+        Instead: a TIN with no vertex of the input in the region farther off, vertically, in the
+        input's unit of z; fine only where it has to be, out of pieces of all stages. The vertices
+        of the region are read, a tile at a time.
     bbox : tuple of float, optional
         Smallest x and y, largest x and y, in the coordinates of the input. Triangles that reach
         into it are given whole. By default all.
+    polygon : path or GeoDataFrame, optional
+        Instead: polygons, in any CRS.
 
     Raises
     ------
     InputFileError
         There is no tile set, no such level, or nothing of it in the region.
     OptionError
-        A region without an inside.
+        A region without an inside, a tolerance below 0, or more than one rule.
     """
     found = index if isinstance(index, TileIndex) else open_index(index)
-    if level < 0:
+    plan = found.plan
+    if level is not None and max_error is not None:
+        raise OptionError("give one of {0} and {1}.", "level", "max_error")
+    if level is not None and level < 0:
         raise OptionError("{0} is {level}; give 0 or more.", "level", level=level)
-    if bbox is not None and not (bbox[0] < bbox[2] and bbox[1] < bbox[3]):
+    if max_error is not None and not 0 <= max_error < float("inf"):
         raise OptionError(
-            "{0} is {bbox}; give the smallest x and y, then the largest.", "bbox", bbox=list(bbox)
+            "{0} is {max_error}; give a distance of 0 or more.", "max_error", max_error=max_error
         )
-    stage, below = found.place_of(level)
-    pieces = [piece for piece in found.whole(stage) if _reaches(found.plan, piece, bbox)]
-    geos = [_loaded(found, piece, below) for piece in pieces]
-    meshes = [
-        geo.pyramid.mesh(_level(found, piece, below))
-        for piece, geo in zip(pieces, geos, strict=True)
-    ]
+    area = area_of(plan, bbox, polygon)
+    errors = None
+    if max_error is None:
+        stage, below = found.place_of(level or 0)
+        pieces = [piece for piece in found.whole(stage) if area.has_piece(piece)]
+        geos = [_loaded(found, piece, below) for piece in pieces]
+        meshes = [
+            geo.pyramid.mesh(_level(found, piece, below))
+            for piece, geo in zip(pieces, geos, strict=True)
+        ]
+        told = level or 0
+    else:
+        z_scale = plan.local_frame.z_scale
+        chosen = list(pieces_within(found, area, max_error * z_scale))
+        pieces = [one.piece for one in chosen]
+        meshes = [one.mesh for one in chosen]
+        told = max((found.level_of(one.piece, one.level) for one in chosen), default=0)
+        errors = _told_errors([one.errors for one in chosen], z_scale)
+        geos = [_loaded(found, piece, found.levels_of(piece.stage)) for piece in pieces[:1]]
     if not meshes:
         raise InputFileError(
             "{path}: no tile reaches into the region; see the footprints in its index, and give "
             "another {0}.",
-            "bbox",
+            area.option,
             path=found.folder,
         )
-    whole = join(found.plan, meshes, [np.ones(mesh.n_vertices) for mesh in meshes])
-    vertices, faces, cells = whole.vertices, whole.faces, whole.cells
-    attributes = whole.attributes
-    if bbox is not None:
-        places = found.plan.local_frame.to_file(vertices)[:, :2][faces]
-        reaches = (places.min(axis=1) <= bbox[2:]) & (places.max(axis=1) >= bbox[:2])
-        used, faces = np.unique(faces[reaches.all(axis=1)], return_inverse=True)
-        vertices, faces, cells = vertices[used], faces.reshape(-1, 3), cells[used]
-        attributes = attributes[used]
-        if not len(faces):
+    whole = join(plan, meshes, [np.ones(mesh.n_vertices) for mesh in meshes])
+    mesh, cells = whole.mesh, whole.cells
+    if area.shape is not None:
+        used, faces = np.unique(mesh.faces[area.faces_of(mesh)], return_inverse=True)
+        if not len(used):
             raise InputFileError(
                 "{path}: there are no triangles in the region; give another {0}.",
-                "bbox",
+                area.option,
                 path=found.folder,
             )
-    mesh = TriangleMesh(vertices, faces, attributes, whole.names)
+        mesh = TriangleMesh(
+            mesh.vertices[used], faces.reshape(-1, 3), mesh.attributes[used], whole.names
+        )
+        cells = cells[used]
     geo = replace(geos[0], origin=MeshOrigin(), errors=None, notes=())
-    return Region(Surface(geo, mesh, cells, level), tuple(pieces))
+    return Region(Surface(geo, mesh, cells, told, errors), tuple(pieces))
+
+
+def _told_errors(parts: list[NDArray[np.float64]], z_scale: float) -> SurfaceErrors:
+    errors = np.concatenate([np.empty(0), *parts]) / z_scale
+    covered = errors[np.isfinite(errors)]
+    return SurfaceErrors(
+        float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
+        float(np.abs(covered).max(initial=0.0)),
+        len(errors) - len(covered),
+    )
 
 
 def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:
@@ -166,25 +203,3 @@ def _loaded(index: TileIndex, piece: Piece, below: int) -> GeoPyramid:
     from wavelet_gis.io.pyramid.pyramid_file import read_levels
 
     return read_levels(index.path(piece), _level(index, piece, below))
-
-
-def _reaches(plan: TilePlan, piece: Piece, bbox: Box | None) -> bool:
-    """Return whether the cells of a piece, or its border, reach into a box."""
-    if bbox is None:
-        return True
-    top, left, bottom, right = plan.cells(piece)
-    if plan.points is not None:
-        in_rows, in_columns = plan.points.reach_in_cells
-        top, left, bottom, right = (
-            top - in_rows,
-            left - in_columns,
-            bottom + in_rows,
-            right + in_columns,
-        )
-    x, y = plan.geometry.centres(
-        np.array([left, right, right, left], dtype=np.float64),
-        np.array([top, top, bottom, bottom], dtype=np.float64),
-    )
-    return bool(
-        x.min() <= bbox[2] and x.max() >= bbox[0] and y.min() <= bbox[3] and y.max() >= bbox[1]
-    )

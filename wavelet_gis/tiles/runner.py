@@ -7,12 +7,15 @@ inputs, and so is one that was half done: its files are written aside.
 
 from __future__ import annotations
 
+import os
 import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from importlib.util import find_spec
-from multiprocessing import get_context
+from itertools import islice
+from multiprocessing import get_context, parent_process
 from typing import Any
 
 from wavelet_core.errors import MissingDependencyError
@@ -26,6 +29,9 @@ Job = tuple[Callable[..., dict[str, Any]], tuple[Any, ...]]
 
 #: Tasks that a scheduler is given at once; some 50,000 alive are known to stall one.
 _WAVE = 10_000
+
+#: Jobs that processes are given at once, each, so that none waits for the next.
+_AHEAD = 4
 
 #: Times that all workers may be lost without a piece being made in between.
 _MOST_LOSSES = 5
@@ -66,26 +72,33 @@ def require_dask() -> None:
     """Raise where a scheduler is named and dask is not installed."""
     if find_spec("distributed") is None:
         raise MissingDependencyError(
-            "a scheduler is asked by dask.distributed; install it with 'pip install distributed', "
+            "using a scheduler needs dask.distributed; install it with 'pip install distributed', "
             "or leave {0} out.",
             "scheduler",
         )
 
 
 def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]:
-    left = list(jobs)
+    left = dict(enumerate(jobs))
     n_losses = 0
     while left:
         n_before = len(left)
         pool = ProcessPoolExecutor(
-            min(workers, len(left)), mp_context=get_context("spawn"), initializer=_leave_interrupts
+            min(workers, len(left)), mp_context=get_context("spawn"), initializer=_as_a_worker
         )
         try:
-            futures = {pool.submit(job[0], *job[1]): job for job in left}
-            for future in as_completed(futures):
-                record = future.result()
-                left.remove(futures[future])
-                yield record
+            waiting = iter(list(left))
+            in_flight: dict[Future[dict[str, Any]], int] = {}
+            while True:
+                for number in islice(waiting, _AHEAD * workers - len(in_flight)):
+                    function, arguments = left[number]
+                    in_flight[pool.submit(function, *arguments)] = number
+                if not in_flight:
+                    break
+                for future in wait(in_flight, return_when=FIRST_COMPLETED).done:
+                    record = future.result()
+                    del left[in_flight.pop(future)]
+                    yield record
         except BrokenProcessPool as error:
             n_losses = n_losses + 1 if len(left) == n_before else 0
             if n_losses == _MOST_LOSSES:
@@ -97,9 +110,18 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
             pool.shutdown(cancel_futures=True)
 
 
-def _leave_interrupts() -> None:
-    """Leave Ctrl-C to the program, which lets the pieces in flight be finished."""
+def _as_a_worker() -> None:
+    """Leave Ctrl-C to the program, which lets the pieces in flight be finished; end with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_the_program, daemon=True).start()
+
+
+def _end_with_the_program() -> None:
+    """End once the program has: one that is killed tells its workers nothing, and they wait."""
+    program = parent_process()
+    if program is not None:
+        program.join()
+        os._exit(1)
 
 
 def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:

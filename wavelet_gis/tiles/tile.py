@@ -13,6 +13,7 @@ from wavelet_core.errors import OptionError
 from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_text
+from wavelet_gis.io.scratch import sweep_own
 from wavelet_gis.notes import warn
 from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, told
 from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
@@ -20,7 +21,7 @@ from wavelet_gis.tiles.piece import LOOSE, PIECES, make_piece, read_record, sha2
 from wavelet_gis.tiles.plan import LEVELS, PLAN, TILE, Piece, TilePlan, plan_of_rasters
 from wavelet_gis.tiles.runner import Job, records_of, require_dask
 
-__all__ = ["Tiled", "tile_clouds", "tile_rasters"]
+__all__ = ["Tiled", "run_plan", "tile_clouds", "tile_rasters"]
 
 #: Told of each piece: its record, how many are done, how many there are.
 OnPiece = Callable[[dict[str, Any], int, int], None]
@@ -123,7 +124,7 @@ def tile_rasters(
     """
     _require_workers(workers, scheduler)
     plan = plan_of_rasters(data, tile=tile, levels=levels, **options)
-    return _tiled(plan, folder, workers, scheduler, overwrite, on_piece)
+    return run_plan(plan, folder, workers, scheduler, overwrite=overwrite, on_piece=on_piece)
 
 
 def tile_clouds(
@@ -170,7 +171,7 @@ def tile_clouds(
 
     _require_workers(workers, scheduler)
     plan = plan_of_clouds(data, tile=tile, levels=levels, **options)
-    return _tiled(plan, folder, workers, scheduler, overwrite, on_piece)
+    return run_plan(plan, folder, workers, scheduler, overwrite=overwrite, on_piece=on_piece)
 
 
 def _require_workers(workers: int, scheduler: str | None) -> None:
@@ -180,30 +181,49 @@ def _require_workers(workers: int, scheduler: str | None) -> None:
         require_dask()
 
 
-def _tiled(
+def run_plan(
     plan: TilePlan,
     folder: str | os.PathLike[str],
     workers: int,
-    scheduler: str | None,
-    overwrite: bool,
-    on_piece: OnPiece | None,
+    scheduler: str | None = None,
+    *,
+    overwrite: bool = False,
+    on_piece: OnPiece | None = None,
+    make: Callable[[str, Piece, dict[str, str]], dict[str, Any]] = make_piece,
 ) -> Tiled:
+    """Make all pieces of a plan, stage by stage, and the index.
+
+    Parameters
+    ----------
+    plan : TilePlan
+    folder, workers, scheduler, overwrite, on_piece
+        See `tile_rasters`.
+    make : callable
+        What makes a piece; `wavelet_gis.tiles.piece.make_piece` says how.
+    """
     place = _prepared(Path(folder).absolute(), plan, overwrite)
     n_total = sum(len(plan.pieces(stage)) for stage in range(plan.n_stages))
     n_made = n_found = 0
+    checksum, numbers = plan.checksum, plan.inputs_of_tiles()
     for stage in range(plan.n_stages):
         jobs: list[Job] = []
+        needed: set[int] = set()
         for piece in plan.pieces(stage):
-            inputs = _inputs(place, plan, piece)
+            if stage == 0:
+                files = (plan.files[number] for number in numbers[piece])
+                inputs = {file.path: told(file) for file in files}
+            else:
+                inputs = _parts(place, plan, piece)
             record = read_record(place, piece)
-            if record is not None and _is_whole(place, plan, piece, record, inputs):
+            if record is not None and _is_whole(place, checksum, piece, record, inputs):
                 n_found += 1
                 if on_piece is not None:
                     on_piece(record, n_made + n_found, n_total)
             else:
-                jobs.append((make_piece, (str(place), piece, inputs)))
+                jobs.append((make, (str(place), piece, inputs)))
+                needed.update(numbers.get(piece, ()))
         if stage == 0 and plan.points is not None:
-            _cut(place, plan, [arguments[1] for _, arguments in jobs], workers, scheduler)
+            _cut(place, plan, sorted(needed), workers, scheduler)
         for record in records_of(jobs, workers, scheduler):
             n_made += 1
             if on_piece is not None:
@@ -233,13 +253,11 @@ def _tiled(
 
 
 def _cut(
-    folder: Path, plan: TilePlan, pieces: Sequence[Piece], workers: int, scheduler: str | None
+    folder: Path, plan: TilePlan, needed: Sequence[int], workers: int, scheduler: str | None
 ) -> None:
     """Put the points of the files that some tiles need beside one another by tile."""
     from wavelet_gis.tiles.cloud.cut import is_cut, make_cut
-    from wavelet_gis.tiles.cloud.tile import inputs_of
 
-    needed = sorted({number for piece in pieces for number in inputs_of(plan, piece)})
     jobs: list[Job] = [
         (make_cut, (str(folder), number)) for number in needed if not is_cut(folder, plan, number)
     ]
@@ -269,29 +287,17 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
             shutil.rmtree(folder / name, ignore_errors=True)
         (folder / INDEX).unlink(missing_ok=True)
     folder.mkdir(exist_ok=True)
+    stages = [f"{PIECES}/{stage}" for stage in range(plan.n_stages)]
+    for name in (CUT, SOURCES, *stages):  # what a killed run had begun
+        sweep_own(folder / name)
     if not (folder / PLAN).is_file() or (folder / PLAN).read_text("utf-8") != text:
         with new_file(folder / PLAN, overwrite=True) as scratch:
             write_text(scratch, text)
     return folder
 
 
-def _inputs(folder: Path, plan: TilePlan, piece: Piece) -> dict[str, str]:
-    """Return what a piece is made from: files and their dates, or pieces and their checksums."""
-    if piece.stage == 0 and plan.points is not None:
-        from wavelet_gis.tiles.cloud.tile import inputs_of
-
-        near = (plan.files[number] for number in inputs_of(plan, piece))
-        return {file.path: told(file) for file in near}
-    if piece.stage == 0:
-        top, left, bottom, right = plan.cells(piece)
-        return {
-            file.path: told(file)
-            for file in plan.files
-            if file.row <= bottom
-            and file.row + file.height > top
-            and file.column <= right
-            and file.column + file.width > left
-        }
+def _parts(folder: Path, plan: TilePlan, piece: Piece) -> dict[str, str]:
+    """Return the pieces that a group is made from, with their checksums."""
     records = {part: read_record(folder, part) for part in plan.parts(piece)}
     return {
         part.name: record["sha256"]
@@ -301,9 +307,9 @@ def _inputs(folder: Path, plan: TilePlan, piece: Piece) -> dict[str, str]:
 
 
 def _is_whole(
-    folder: Path, plan: TilePlan, piece: Piece, record: dict[str, Any], inputs: dict[str, str]
+    folder: Path, checksum: str, piece: Piece, record: dict[str, Any], inputs: dict[str, str]
 ) -> bool:
-    if record.get("plan") != plan.checksum or record.get("inputs") != inputs:
+    if record.get("plan") != checksum or record.get("inputs") != inputs:
         return False
     if record["status"] not in ("whole", "loose"):
         return bool(record["status"] == "empty")

@@ -90,7 +90,7 @@ class InOtherLibraries:
         dem = surface_dem(self.geo, self.mesh, cell_size=cell_size, attribute=attribute)
         if not dem.geometry.is_axis_aligned:
             raise OptionError(
-                "the grid of the input is turned, so that its rows have no y; give {0}.",
+                "the grid of the input is rotated, so that its rows have no single y; give {0}.",
                 "cell_size",
             )
         values = np.full(dem.geometry.shape, np.nan)

@@ -217,13 +217,13 @@ def extract(
     if sum(rule is not None for rule in (level, vertices, max_error)) > 1:
         raise OptionError("give one of {0}, {1} and {2}.", "level", "vertices", "max_error")
     if zones is not None and (level is not None or vertices is not None):
-        raise OptionError("{0} are of {1}; leave them out.", "zones", "max_error")
+        raise OptionError("{0} go with {1} only; leave them out.", "zones", "max_error")
     if vertices is not None:
         return _between(geo, mesh_of_size(geo.pyramid, vertices))
     if max_error is not None or zones is not None:
         return _within(geo, max_error, zones, zone_field, refine, progress)
     if refine != 0:
-        raise OptionError("{0} is of {1}; give both or none.", "refine", "max_error")
+        raise OptionError("{0} goes with {1}; give both or neither.", "refine", "max_error")
     chosen = level or 0
     mesh = geo.pyramid.mesh(chosen)
     return Surface(geo, mesh, geo.pyramid.vertex_ids(chosen), chosen, _errors_at(geo, chosen))

@@ -21,8 +21,8 @@ from wavelet_core import (
     relifted,
 )
 from wavelet_core.filtering.gains import channel_index
-from wavelet_core.filtering.noise import estimate_noise
-from wavelet_core.filtering.noise_model import Noise, RangeOption
+from wavelet_core.filtering.noise.model import Noise, RangeOption
+from wavelet_core.filtering.noise.white import estimate_noise
 from wavelet_core.lifting.spacings import mesh_spacing
 from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
@@ -189,20 +189,14 @@ def filter_pyramid(
     single = list(gains.items() if isinstance(gains, dict) else gains)
     asks_scales = bool(single) or levels is not None or metres is not None or drop_coarse
     asks_denoising = denoise is not False
-    if not asks_scales and not asks_denoising:
-        raise OptionError(
-            "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
-        )
-    told_of_noise = {
+    of_noise = {
         "noise_range": noise_range != 0.0,
         "local_noise": local_noise,
         "outliers": outliers,
         "n_pyramids": n_pyramids is not None,
         "channels": channels is not None,
     }
-    in_vain = [name for name, is_given in told_of_noise.items() if is_given]
-    if in_vain and not asks_denoising:
-        raise OptionError("{0} is for {1}; give {1} too, or leave {0} out.", in_vain[0], "denoise")
+    _require_work(of_noise, asks_scales=asks_scales, asks_denoising=asks_denoising)
     n_pyramids = N_PYRAMIDS if n_pyramids is None else n_pyramids
     require_levels(geo)
     builds_levels = metres is not None and not _has_sizes(geo, metres)
@@ -284,69 +278,88 @@ def denoised(
     OptionError
         An unknown channel or a negative number; nothing has been computed yet.
     """
-    pyramid, sigmas = geo.pyramid, dict[str, float]()
+    _require_noise(
+        geo, channels, n_pyramids, has_kind=noise_range != 0.0 or local_noise or outliers
+    )
+    reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
+    pyramid, sigmas, described = geo.pyramid, dict[str, float](), []
+    for k, name in enumerate(channels):
+        mesh = pyramid.synthesise() if k > 0 or finest is None else finest
+        unit = geo.frame.z_scale if name == "z" else 1.0
+        given = None if sigma is None else sigma * unit
+        part = part_of(progress, k / len(channels), (k + 1) / len(channels))
+        if n_pyramids == 0:
+            noise = Noise(_noise_of(pyramid, mesh, name) if given is None else given)
+            pyramid = pyramid.denoised(noise.sigma, channels=[name], finest=mesh, progress=part)
+        else:
+            found: dict[str, Noise] = {}
+            clean = denoise(
+                mesh,
+                given,
+                n_pyramids=n_pyramids,
+                channels=[name],
+                locked=pyramid.locked,
+                noise_range=reach,
+                local_noise=local_noise,
+                outliers=outliers,
+                found=found,
+                progress=part,
+            )
+            noise, pyramid = found[name], relifted(pyramid, clean)
+            _note_outliers(geo.source_name, name, noise)
+            if noise.is_rough:
+                _warn_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
+        sigmas[name] = noise.sigma / unit
+        described.append(f"{name} {_in_file(noise, unit, _metre(geo)).describe()}")
+    how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
+    line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
+    return geo.with_pyramid(pyramid, line), sigmas
+
+
+def _require_work(of_noise: dict[str, bool], *, asks_scales: bool, asks_denoising: bool) -> None:
+    """Refuse to change nothing, and options of denoising without it."""
+    if not asks_scales and not asks_denoising:
+        raise OptionError(
+            "nothing to change; give {0}, {1}, {2} or {3}.", "gains", "levels", "metres", "denoise"
+        )
+    in_vain = [name for name, is_given in of_noise.items() if is_given]
+    if in_vain and not asks_denoising:
+        raise OptionError("{0} is for {1}; give {1} too, or leave {0} out.", in_vain[0], "denoise")
+
+
+def _require_noise(
+    geo: GeoPyramid, channels: Sequence[str], n_pyramids: int, *, has_kind: bool
+) -> None:
+    """Refuse channels without noise, and noise of a kind that thresholds do not know."""
     for name in channels:
-        channel_index(pyramid.channels, name)
+        channel_index(geo.pyramid.channels, name)
         if name in geo.categories:
             raise OptionError(
                 "{name} is a category and has no noise; name another channel.",
                 "channels",
                 name=name,
             )
-    if n_pyramids == 0 and (noise_range != 0.0 or local_noise or outliers):
+    if n_pyramids == 0 and has_kind:
         raise OptionError(
-            "thresholds know white noise only; leave out {0}, {1} and {2}, or average one or more "
+            "thresholds assume white noise; leave out {0}, {1} and {2}, or average one or more "
             "pyramids with {3}.",
             *NOISE_OPTIONS,
             "n_pyramids",
         )
-    reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
-    described = []
-    mesh = pyramid.synthesise() if finest is None else finest
-    for k, name in enumerate(channels):
-        if k > 0:
-            mesh = pyramid.synthesise()
-        unit = geo.frame.z_scale if name == "z" else 1.0
-        part = part_of(progress, k / len(channels), (k + 1) / len(channels))
-        if n_pyramids == 0:
-            deviation = _noise_of(pyramid, mesh, name) if sigma is None else sigma * unit
-            sigmas[name] = deviation / unit
-            described.append(f"{name} {sigmas[name]:.4g}")
-            pyramid = pyramid.denoised(deviation, channels=[name], finest=mesh, progress=part)
-            continue
-        found: dict[str, Noise] = {}
-        clean = denoise(
-            mesh,
-            None if sigma is None else sigma * unit,
-            n_pyramids=n_pyramids,
-            channels=[name],
-            locked=pyramid.locked,
-            noise_range=reach,
-            local_noise=local_noise,
-            outliers=outliers,
-            found=found,
-            progress=part,
-        )
-        noise = found[name]
-        _tell_of_outliers(geo.source_name, name, noise)
-        if noise.is_rough:
-            _tell_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
-        sigmas[name] = noise.sigma / unit
-        in_file = replace(
-            noise,
-            sigma=noise.sigma / unit,
-            quantum=noise.quantum / unit,
-            reach=noise.reach / _metre(geo),
-        )
-        described.append(f"{name} {in_file.describe()}")
-        pyramid = relifted(pyramid, clean)
-    how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
-    line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
-    return geo.with_pyramid(pyramid, line), sigmas
 
 
-def _tell_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
-    """Warn that noise and relief were not to be told apart."""
+def _in_file(noise: Noise, unit: float, metre: float) -> Noise:
+    """Return noise in the units of the input."""
+    return replace(
+        noise,
+        sigma=noise.sigma / unit,
+        quantum=noise.quantum / unit,
+        reach=noise.reach / metre,
+    )
+
+
+def _warn_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
+    """Warn that noise and relief could not be told apart."""
     kind = "white, since its range is not to be told either, and " if noise_range else ""
     warn(
         TerrainWarning,
@@ -362,13 +375,13 @@ def _tell_of_roughness(source: str, channel: str, sigma: float, noise_range: Ran
     )
 
 
-def _tell_of_outliers(source: str, channel: str, noise: Noise) -> None:
+def _note_outliers(source: str, channel: str, noise: Noise) -> None:
     """Warn of values that denoising passes through, since no noise is like them."""
     if noise.n_standing_out:
         warn(
             TerrainWarning,
             "outliers_left",
-            "{name}: outliers of {channel}, values that stand out of their neighbours far above "
+            "{name}: outliers of {channel}, values that stand out from their neighbours far above "
             "the noise, are left as they are ({n_values} here; {0} replaces them)",
             "outliers",
             stacklevel=4,

@@ -7,7 +7,7 @@ from helpers_meshes import grid_with_holes, random_delaunay
 
 from wavelet_core import OptionError, TriangleMesh, analyse, synthetic
 from wavelet_core.filtering.gains import band_gains, relifted
-from wavelet_core.filtering.noise import estimate_noise, noise_gains
+from wavelet_core.filtering.noise.white import estimate_noise, noise_gains
 from wavelet_core.lifting.linear_map import Transform
 from wavelet_core.lifting.spacings import level_spacings
 
@@ -89,7 +89,7 @@ def test_a_band_in_ground_units_keeps_the_levels_of_that_size():
         (lambda p: band_gains(p), "give one"),
         (lambda p: band_gains(p, levels=(0, 1), lengths=(1, 2)), "give one"),
         (lambda p: band_gains(p, levels=(3, 1)), "smaller bound first"),
-        (lambda p: band_gains(p, lengths=(1e6, 2e6)), "no level has details of"),
+        (lambda p: band_gains(p, lengths=(1e6, 2e6)), "no level has a spacing of"),
         (lambda p: p.denoised(-1.0), "sigma is -1"),
         (lambda p: p.denoised(1.0, method="median"), "method is 'median'"),
         (lambda p: p.denoised(1.0, strength=-1), "strength is -1"),

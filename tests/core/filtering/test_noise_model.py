@@ -5,13 +5,10 @@ import pytest
 from scipy import ndimage
 
 from wavelet_core import Cancelled, OptionError, TriangleMesh, denoise
-from wavelet_core.filtering.noise import estimate_noise
-from wavelet_core.filtering.noise_model import (
-    correlated_noise,
-    noise_of,
-    rounding_step,
-    without_outliers,
-)
+from wavelet_core.filtering.noise.model import noise_of
+from wavelet_core.filtering.noise.outliers import without_outliers
+from wavelet_core.filtering.noise.rounding import rounding_step
+from wavelet_core.filtering.noise.white import correlated_noise, estimate_noise
 
 N = 100
 X, Y = np.meshgrid(np.arange(float(N)), np.arange(float(N)))

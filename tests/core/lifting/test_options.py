@@ -202,14 +202,14 @@ UNUSED = [
 def test_an_option_that_the_partition_does_not_look_at(options, partition):
     """It was ignored without a word."""
     (option,) = options
-    with pytest.raises(OptionError, match=f"{option} is used by partition .*") as caught:
+    with pytest.raises(OptionError, match=f"{option} is an option of partition .*") as caught:
         chosen(partition=partition, **options)
     assert caught.value.options == (option, "partition")
     assert partition in str(caught.value)
 
 
 def test_an_option_beside_the_partition_that_the_filters_choose():
-    with pytest.raises(OptionError, match=r"norm is used by partition surface only, .*quadric"):
+    with pytest.raises(OptionError, match=r"norm is an option of partition surface.*quadric"):
         chosen(prediction="GL", norm="max")
 
 
@@ -261,7 +261,7 @@ def test_an_error_says_its_parameters_in_the_words_of_its_reader():
     with pytest.raises(OptionError) as caught:
         analyse(synthetic.hills(5, 5), partition="quadric", removal_fraction=0.1)
     words = caught.value.in_words(lambda option: "--" + option.replace("_", "-"))
-    assert words.startswith("--removal-fraction is used by --partition surface only")
+    assert words.startswith("--removal-fraction is an option of --partition surface only")
 
 
 def test_no_message_of_the_core_speaks_of_a_command_line():

@@ -70,20 +70,21 @@ def test_every_pyramid_of_the_default_design_is_told(name, options):
         assert told(pyramid, mesh)[1] == pyramid
 
 
-@pytest.mark.parametrize("parts", ["one part", "parts"])
+@pytest.mark.parametrize("parts", ["one part", "parts", "coarsest"])
 @pytest.mark.parametrize("options", list(OPTIONS))
 @pytest.mark.parametrize("name", list(MESHES))
 def test_an_analysis_takes_the_record_that_a_second_walk_does(name, options, parts, monkeypatch):
-    if parts == "parts":
+    if parts != "one part":
         monkeypatch.setattr(recorded, "LEAST_IN_PARTS", 100)
-        monkeypatch.setattr(recorded, "LEAST_IN_PART", 40)
-        monkeypatch.setattr(recorded, "PART_SHARE", 0.6)
+        monkeypatch.setattr(recorded, "LEAST_IN_PART", 40 if parts == "parts" else 1)
+        monkeypatch.setattr(recorded, "PART_SHARE", 0.6 if parts == "parts" else 0.0)
+        monkeypatch.setattr(recorded, "COARSEST_SHARE", 0.9)
     mesh = MESHES[name]
     pyramid = analyse(mesh, record=True, **OPTIONS[options])
     assert pyramid == analyse(mesh, **OPTIONS[options])
     if pyramid.n_levels and (name, options) != ("holes", "outline"):
-        assert are_alike(pyramid.told.record, record_of(pyramid.with_parts(), mesh))
-        assert record_of(pyramid, mesh) is pyramid.told.record
+        assert are_alike(pyramid.kept_record.record, record_of(pyramid.with_parts(), mesh))
+        assert record_of(pyramid, mesh) is pyramid.kept_record.record
 
 
 @pytest.mark.parametrize("name", ENGINES)
@@ -97,7 +98,7 @@ def test_records_are_those_of_the_first_files_of_format_2(name, options, expecte
     mesh = TriangleMesh.from_grid(z.astype(float), np.arange(50.0), np.arange(40.0))
     digest = hashlib.sha256()
     with engine(name):
-        for part in analyse(mesh, record=True, **options).told.record.parts:
+        for part in analyse(mesh, record=True, **options).kept_record.record.parts:
             for array in (part.answers.levels, *part.answers.going, *part.answers.targets):
                 digest.update(array.tobytes())
     assert digest.hexdigest()[:16] == expected
@@ -107,21 +108,21 @@ def test_a_record_of_the_analysis_is_not_taken_for_another_pyramid_or_input():
     mesh = synthetic.hills(12, 12)
     pyramid = analyse(mesh, levels=4, record=True)
     changed = replace(pyramid, coarse=pyramid.coarse + 1.0)
-    assert changed.told is pyramid.told
+    assert changed.kept_record is pyramid.kept_record
     assert record_of(changed, mesh) is None
     assert record_of(replace(pyramid, steps=pyramid.steps[1:]), mesh) is None
     raised = TriangleMesh(mesh.vertices + np.array([0.0, 0.0, 1.0]), mesh.faces)
     assert record_of(pyramid, raised) is None
-    assert pyramid.with_gains({1: 0.5}).told is None
-    assert analyse(mesh, levels=2, prediction="GLMN", record=True).told is None
-    assert analyse(mesh, levels=0, record=True).told is None
+    assert pyramid.with_gains({1: 0.5}).kept_record is None
+    assert analyse(mesh, levels=2, prediction="GLMN", record=True).kept_record is None
+    assert analyse(mesh, levels=0, record=True).kept_record is None
 
 
 def test_collapses_that_the_link_condition_forbids_leave_the_record_to_the_writer():
     """Only around holes, and there only with a tolerance, is one forbidden by its own step's."""
     mesh, options = MESHES["holes"], OPTIONS["outline"]
     pyramid = analyse(mesh, record=True, **options)
-    assert pyramid.told is None
+    assert pyramid.kept_record is None
     assert told(pyramid, mesh)[1] == pyramid
 
 

@@ -106,7 +106,7 @@ def test_what_one_frame_serves(bounds):
         ((0, 40, 10, 50), "reproject"),
         ((0, 0, 30, 1), "reproject"),
         ((10, 78, 12, 81), "reproject"),
-        ((500000, 5100000, 510000, 5110000), "no degrees"),
+        ((500000, 5100000, 510000, 5110000), "not degrees"),
         ((0, 45, float("nan"), 46), "not finite"),
     ],
 )

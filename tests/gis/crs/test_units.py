@@ -65,7 +65,7 @@ def test_slopes_are_those_of_the_ground_for_any_pair_of_units(tmp_path, unit, ve
 
 def test_heights_over_kilometres_are_metres_and_told(tmp_path):
     source = dem_in(tmp_path, "km")
-    with pytest.warns(UnitWarning, match="units of 1000 m.*taken for the metre"):
+    with pytest.warns(UnitWarning, match="units of 1000 m.*metres are assumed"):
         terrain = open_terrain(source)
     assert terrain.vertical_unit == "metre"
     slope = np.ptp(terrain.mesh.vertices[:, 2]) / np.ptp(terrain.mesh.vertices[:, 0])
@@ -181,7 +181,7 @@ def test_a_mesh_goes_to_the_crs_that_is_named(tmp_path):
     placed = plane_mesh(geo, mesh, "EPSG:25833")
     assert "zone 33N" in placed.system.name
     assert not np.allclose(placed.mesh.vertices[:, 0], mesh.vertices[:, 0])
-    with pytest.raises(CrsError, match="no plane"):
+    with pytest.raises(CrsError, match="is not projected"):
         plane_mesh(geo, mesh, "EPSG:4326")
 
 

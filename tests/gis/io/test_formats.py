@@ -13,7 +13,7 @@ from wavelet_gis.io import formats
 from wavelet_gis.io.formats import MESH_FORMATS, MESH_SUFFIXES, mesh_format
 from wavelet_gis.io.mesh.meshes import write_mesh
 
-DOCS = Path(__file__).resolve().parent.parent.parent.parent / "docs"
+DOCS = Path(__file__).resolve().parent.parent.parent.parent / "docs" / "reference"
 
 
 @pytest.mark.parametrize("row", MESH_FORMATS, ids=lambda row: row.name)

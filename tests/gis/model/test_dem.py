@@ -12,7 +12,8 @@ from wavelet_core.errors import PyramidError
 from wavelet_gis.crs.frame import LocalFrame, working_frame
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.model.dem import Dem, GridGeometry, RasterOrigin, dem_mesh, grid_bounds
+from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh, grid_bounds
+from wavelet_gis.model.raster_origin import RasterOrigin
 
 NORTH_UP = (2.0, 0.0, 100.0, 0.0, -3.0, 60.0)
 SOUTH_UP = (2.0, 0.0, 100.0, 0.0, 3.0, 0.0)

@@ -17,7 +17,7 @@ from gis.tiles.test_tiles import checksums, seams, whole_levels, workers_of
 import wavelet_gis as wg
 from wavelet_core.errors import OptionError
 from wavelet_core.metrics import surface_errors
-from wavelet_gis.errors import InputFileError, TerrainWarning
+from wavelet_gis.errors import InputFileError, OutputFileError, TerrainWarning
 from wavelet_gis.tiles.cloud.cut import CUT, source_record
 from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.plan import Piece, TilePlan
@@ -183,6 +183,17 @@ def test_errors_at_seams_are_no_larger_than_inside(cloud, tiled):
     assert 0 < rms[0] <= 1.05 * rms[1]
 
 
+def test_joined_vertices_are_those_of_the_tiles_to_the_bit(tiled):
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
+    from wavelet_gis.tiles.piece import join
+
+    for piece in tiled.index.whole(0):
+        mesh = read_pyramid(tiled.index.path(piece)).pyramid.mesh(0)
+        joined = join(tiled.index.plan, [mesh], [np.ones(mesh.n_vertices)]).mesh
+        here = joined.vertices[np.lexsort(joined.vertices.T)]
+        assert np.array_equal(here, mesh.vertices[np.lexsort(mesh.vertices.T)])
+
+
 def test_a_region_reads_the_tiles_that_it_needs(tiled):
     box = (500080.0, 5100010.0, 500090.0, 5100020.0)
     region = wg.extract_region(tiled.index, level=tiled.index.n_levels, bbox=box)
@@ -210,7 +221,7 @@ def test_a_second_start_mends_what_is_damaged(parts, tiled, tmp_path):
 def test_workers_and_program_that_are_killed_at_random_cost_what_is_in_flight(
     parts, tiled, tmp_path
 ):
-    pytest.importorskip("psutil")
+    psutil = pytest.importorskip("psutil")
     command = [sys.executable, "-m", "wavelet_gis.cli", "tile", parts, tmp_path / "t"]
     command += ["--tile", 33, "--levels", 4, "--attributes", "intensity"]
     command += ["--workers", 2, "--quiet"]
@@ -228,13 +239,43 @@ def test_workers_and_program_that_are_killed_at_random_cost_what_is_in_flight(
                     chance.choice(workers).kill()
                     n_killed += 1
                     next_kill = time.monotonic() + chance.uniform(2.0, 3.0)
+        left = workers_of(program.pid)
         if program.poll() is None:
             program.kill()
         program.wait()
+        _, alive = psutil.wait_procs(left, timeout=20)
+        assert alive == []  # workers end with the program
     assert n_killed > 0
     ended = wg.tile_clouds(parts, tmp_path / "t", **OPTIONS)
     assert ended.failed == []
     assert checksums(tmp_path / "t") == checksums(tiled.index.folder)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+def test_a_disk_that_fills_up_costs_what_does_not_fit(tmp_path):
+    from cli.faults.test_full_disk import files_limited_to
+
+    (tmp_path / "in").mkdir()
+    las = laspy.read(write_las(tmp_path / "raw.las", 6000))
+    for k in range(9):  # so many that a file's cut is smaller than a tile
+        part = laspy.LasData(copy.deepcopy(las.header), las.points[k::9].copy())
+        part.write(tmp_path / "in" / f"{k}.las")
+    options = {"tile": 50, "levels": 3}
+    good = wg.tile_clouds(tmp_path / "in", tmp_path / "good", **options)
+    failed = []
+    for n_bytes in (25_000, 45_000):  # no room for a cut; for a tile
+        with files_limited_to(n_bytes), pytest.raises(OutputFileError, match="the index cannot be"):
+            wg.tile_clouds(tmp_path / "in", tmp_path / "t", **options)
+        records = open_index(tmp_path / "t").records
+        failed.append(sorted(p.stage for p in records if records[p]["status"] == "failed"))
+        assert not list((tmp_path / "t").rglob(".terrain*"))
+    with files_limited_to(100_000), pytest.warns(TerrainWarning, match="set aside"):
+        broken = wg.tile_clouds(tmp_path / "in", tmp_path / "t", **options)
+    failed.append([record["stage"] for record in broken.failed])
+    assert failed == [[0] * 4, [0] * 4, [1]]
+    ended = wg.tile_clouds(tmp_path / "in", tmp_path / "t", **options)
+    assert (ended.failed, ended.n_made) == ([], 1)
+    assert checksums(tmp_path / "t") == checksums(good.index.folder)
 
 
 def test_a_damaged_file_costs_its_tiles_until_it_is_mended(parts, tiled, tmp_path):
@@ -343,3 +384,79 @@ def test_refusals(cloud, parts, tmp_path):
         wg.restored_raster(tiled.index)
     assert source_record(tmp_path, 0) is None
     assert open_index(tmp_path / "t").plan.points is not None
+
+
+def test_a_tolerance_is_kept_at_every_vertex_by_pieces_of_all_stages(tiled):
+    index = tiled.index
+    finest = wg.extract_region(index, level=index.n_levels).surface.mesh
+    sizes = []
+    for limit in (0.0, 0.2, 3.0, 12.0, 40.0):
+        region = wg.extract_region(index, max_error=limit)
+        mesh = region.surface.mesh
+        errors = np.abs(surface_errors(mesh, finest.vertices))
+        assert np.nanmax(errors) <= limit + 1e-9
+        assert region.surface.errors.max_error == pytest.approx(np.nanmax(errors), abs=1e-9)
+        assert mesh.plan_areas.min() > 0
+        assert mesh.plan_areas.sum() == pytest.approx(finest.plan_areas.sum(), rel=1e-9)
+        tail, head = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+        directed = tail * mesh.n_vertices + head
+        assert len(np.unique(directed)) == len(directed)
+        sizes.append((mesh.n_vertices, {piece.stage for piece in region.pieces}))
+    assert [n for n, _ in sizes] == sorted((n for n, _ in sizes), reverse=True)
+    assert sizes[1][1] == {0}
+    assert max(sizes[-1][1]) > 0
+
+
+def test_pieces_of_different_stages_fit(tiled):
+    """Any pieces that cover the whole once are one surface, at whatever levels."""
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
+    from wavelet_gis.tiles.piece import join
+
+    index = tiled.index
+    pieces = [Piece(1, 0, 0), *index.plan.parts(Piece(1, 1, 0)), Piece(1, 0, 1), Piece(1, 1, 1)]
+    meshes = []
+    for k, piece in enumerate(pieces):
+        pyramid = read_pyramid(index.path(piece)).pyramid
+        meshes.append(pyramid.mesh((3 * k) % (pyramid.n_levels + 1)))
+    mesh = join(index.plan, meshes, [np.ones(m.n_vertices) for m in meshes]).mesh
+    area = wg.extract_region(index).surface.mesh.plan_areas.sum()
+    assert mesh.plan_areas.sum() == pytest.approx(area, rel=1e-9)
+    tail, head = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
+    forward, back = (np.unique(a * mesh.n_vertices + b) for a, b in ((tail, head), (head, tail)))
+    n_outline = len(np.setdiff1d(forward, back))
+    root = wg.extract_region(index).surface.mesh
+    assert len(forward) == len(tail)
+    # The outline is that of the whole: no edge inside is without a face on its other side.
+    outline = np.unique(np.setdiff1d(forward, back) // mesh.n_vertices)
+    import shapely
+
+    edge = shapely.union_all(shapely.polygons(root.vertices[root.faces][:, :, :2])).boundary
+    distance = shapely.distance(shapely.points(mesh.vertices[outline, :2]), edge)
+    assert n_outline == len(outline)
+    assert distance.max() < 1e-6
+
+
+def test_a_polygon_is_what_reaches_into_it(tiled, tmp_path):
+    import geopandas
+    import shapely
+
+    triangle = shapely.Polygon([(500040, 5100040), (500060, 5100040), (500050, 5100060)])
+    frame = geopandas.GeoDataFrame(geometry=[triangle], crs="EPSG:32632").to_crs("EPSG:4326")
+    frame.to_file(tmp_path / "a.gpkg")
+    level = tiled.index.n_levels
+    region = wg.extract_region(tiled.index, level=level, polygon=tmp_path / "a.gpkg")
+    mesh = region.surface.file_mesh
+    faces = shapely.polygons(mesh.vertices[mesh.faces][:, :, :2])
+    assert shapely.distance(faces, triangle).max() < 1e-3
+    assert shapely.union_all(faces).buffer(1e-3).contains(triangle)
+    box = wg.extract_region(tiled.index, level=level, bbox=triangle.bounds)
+    assert region.surface.mesh.n_faces < box.surface.mesh.n_faces
+    with pytest.raises(OptionError, match="give one of bbox and polygon"):
+        wg.extract_region(tiled.index, bbox=(0, 0, 1, 1), polygon=frame)
+    with pytest.raises(OptionError, match="give one of level and max_error"):
+        wg.extract_region(tiled.index, level=0, max_error=1)
+    with pytest.raises(OptionError, match="a distance of 0 or more"):
+        wg.extract_region(tiled.index, max_error=-1)
+    far = frame.set_geometry(frame.geometry.translate(1, 1))
+    with pytest.raises(InputFileError, match="give another polygon"):
+        wg.extract_region(tiled.index, polygon=far)

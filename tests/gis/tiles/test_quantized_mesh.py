@@ -298,7 +298,7 @@ def test_refusals(tmp_path):
         wg.terrain_tiles(dem, tmp_path / "out", level=1)
     with pytest.warns(UserWarning, match="no CRS"):
         lost = wg.open(write_tif(tmp_path / "lost.tif", hills(20, 20), crs=None))
-    with pytest.raises(CrsError, match="nothing tells where on earth"):
+    with pytest.raises(CrsError, match="nothing says where on earth"):
         wg.terrain_tiles(lost, tmp_path / "out")
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "letter.txt").write_text("dear", "utf-8")

@@ -186,7 +186,7 @@ def test_points_and_triangles_of_a_vector_layer(analysis, tmp_path):
     triangles = wg.open(tmp_path / "tin.gpkg", layer="level_01_tin")
     assert triangles.mesh.n_faces == mesh.n_faces
     assert triangles.system.name == analysis.geo.system.name
-    with pytest.raises(InputFileError, match="level_01_tin, level_01_vertices; name one by layer"):
+    with pytest.raises(InputFileError, match="level_01_vertices; name one with layer"):
         wg.open(tmp_path / "tin.gpkg")
 
 

@@ -86,7 +86,7 @@ _READING = (
 
 
 def add_raster_arguments(group: argparse._ArgumentGroup) -> None:
-    """Add what tells how a raster is read."""
+    """Add what says how a raster is read."""
     group.add_argument("--band", type=int, metavar="N", help="band of a raster, from 1")
     group.add_argument(
         "--nodata",
@@ -103,7 +103,7 @@ def add_raster_arguments(group: argparse._ArgumentGroup) -> None:
 
 
 def add_place_arguments(group: argparse._ArgumentGroup) -> None:
-    """Add what tells where an input is, instead of its file."""
+    """Add what says where an input is, instead of its file."""
     group.add_argument("--crs", metavar="CRS", help="instead of the file's, such as EPSG:2154")
     group.add_argument(
         "--vertical-unit",
@@ -114,7 +114,7 @@ def add_place_arguments(group: argparse._ArgumentGroup) -> None:
 
 
 def add_point_arguments(group: argparse._ArgumentGroup) -> None:
-    """Add what tells how a LAS file is read, and which of its points make the surface."""
+    """Add what says how a LAS file is read, and which of its points make the surface."""
     group.add_argument(
         "--attributes",
         type=names,
@@ -413,8 +413,8 @@ def add_layers_argument(parser: argparse.ArgumentParser, default: str | None = "
         choices=("auto", "all", "coarse", "none"),
         default=default,
         help="vector layers to write beside the pyramid, which is complete without them: the "
-        "coarse TIN and the details of the coarser levels, up to 100,000 features (auto, the "
-        "default), those of all levels, the coarse TIN only, or none",
+        "coarse TIN, up to 50,000 vertices, and the details of the coarser levels, up to 80,000 "
+        "features (auto, the default), those of all levels, the coarse TIN only, or none",
     )
 
 

@@ -47,6 +47,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "only the tiles there are read",
     )
     parser.add_argument(
+        "--polygon",
+        metavar="FILE",
+        help="the same with the polygons of a vector file, in any CRS",
+    )
+    parser.add_argument(
         "--refine",
         type=int,
         metavar="N",
@@ -71,10 +76,11 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_gis.workflows.save import check_surface_output, save
 
     options = surface_options(arguments)
+    polygons = () if arguments.polygon is None else (arguments.polygon,)
     check_surface_output(
         arguments.output,
         overwrite=arguments.overwrite,
-        inputs=(arguments.file, *tolerance_files(arguments)),
+        inputs=(arguments.file, *tolerance_files(arguments), *polygons),
         **options,
     )
     surface = _of_tiles(arguments) if is_index(arguments.file) else _of_pyramid(arguments)
@@ -106,8 +112,9 @@ def _of_pyramid(arguments: argparse.Namespace) -> Surface:
     from wavelet_gis.workflows.extract import extract
     from wavelet_gis.workflows.open import load
 
-    if arguments.bbox is not None:
-        raise OptionError("{0} is for tile sets, and this is one pyramid; leave it out.", "bbox")
+    for name in ("bbox", "polygon"):
+        if getattr(arguments, name) is not None:
+            raise OptionError("{0} is for tile sets, and this is one pyramid; leave it out.", name)
     rules = (arguments.vertices, arguments.max_error, arguments.zones)
     between = any(rule is not None for rule in rules)
     return extract(
@@ -125,7 +132,15 @@ def _of_tiles(arguments: argparse.Namespace) -> Surface:
     from wavelet_core.errors import OptionError
     from wavelet_gis.tiles.read import extract_region
 
-    for name in ("vertices", "max_error", "zones", "zone_field", "refine"):
+    for name in ("vertices", "zones", "zone_field", "refine"):
         if getattr(arguments, name):
             raise OptionError("{0} is for one pyramid, and this is a tile set; leave it out.", name)
-    return extract_region(arguments.file, level=arguments.level or 0, bbox=arguments.bbox).surface
+    if isinstance(arguments.max_error, str):
+        raise OptionError("{0} of a tile set is one number; give a distance.", "max_error")
+    return extract_region(
+        arguments.file,
+        level=arguments.level,
+        max_error=arguments.max_error,
+        bbox=arguments.bbox,
+        polygon=arguments.polygon,
+    ).surface

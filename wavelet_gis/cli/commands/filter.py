@@ -166,7 +166,7 @@ def _range(text: str) -> float | str:
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no length, nor auto") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is neither a length nor auto") from None
 
 
 def _sigma(text: str) -> float:

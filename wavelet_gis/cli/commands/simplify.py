@@ -131,7 +131,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     if solver:
         with console.progress("meshing") as progress:
             tin = tin.for_solver(progress=progress, **solver)
-    _tell_rounds(tin, console)
+    _say_rounds(tin, console)
     save(tin, arguments.output, overwrite=arguments.overwrite, **options)
     figures = {**tin.figures(), "seconds": round(perf_counter() - began, 3)}
     console.say(
@@ -182,7 +182,7 @@ def _solver_options(arguments: argparse.Namespace) -> dict[str, float]:
     return {name: value for name, value in given.items() if value is not None}
 
 
-def _tell_rounds(tin: Simplified, console: Console) -> None:
+def _say_rounds(tin: Simplified, console: Console) -> None:
     """Print what each round of the refinement led to."""
     if not tin.rounds:
         return

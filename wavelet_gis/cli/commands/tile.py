@@ -72,15 +72,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
-    from wavelet_gis.io.names import files_of, told_as_one
+    from wavelet_gis.io.names import files_of, joint_name
     from wavelet_gis.tiles.index import INDEX
     from wavelet_gis.tiles.tile import tile_clouds, tile_rasters
-    from wavelet_gis.workflows.input_options import CLOUD, RASTER, require_meaning
+    from wavelet_gis.workflows.opening.input_options import CLOUD, RASTER, require_meaning
 
     files = files_of(arguments.input)
     is_cloud = suffix_of(files[0]) in CLOUD_SUFFIXES
     given = {name: getattr(arguments, name) for name in (*_OF_RASTERS, *_OF_CLOUDS)}
-    require_meaning(told_as_one(files), CLOUD if is_cloud else RASTER, given)
+    require_meaning(joint_name(files), CLOUD if is_cloud else RASTER, given)
     options = {name: given[name] for name in (_OF_CLOUDS if is_cloud else _OF_RASTERS)}
     if arguments.tile is not None:
         options["tile"] = arguments.tile if is_cloud else _cells(arguments.tile)

@@ -484,7 +484,7 @@ def _check_names(name: str, lifted: list[PointAttribute]) -> None:
     for attribute in lifted:
         if attribute.name in seen:
             raise InputFileError(
-                f"{name}: attribute {attribute.name!r} is asked for twice; name it once."
+                f"{name}: attribute {attribute.name!r} is requested twice; name it once."
             )
         seen.add(attribute.name)
 

@@ -55,7 +55,7 @@ def read_clouds(
     if any(attribute.dimension == HEIGHT_ABOVE_GROUND for attribute in cloud.attributes):
         note(
             "hag_by_file",
-            "heights above the ground are above the ground of the same file; near the borders of "
-            "files they are less sure",
+            "heights above the ground are taken from the ground points of the same file; near the "
+            "borders of files they are less reliable",
         )
     return cloud, agreed(paths, places)

@@ -115,7 +115,7 @@ def _landxml_unit(wkt: str, path: str | os.PathLike[str]) -> str:
                 'temperatureUnit="fahrenheit" pressureUnit="inHG"/>'
             )
     raise OutputFileError(
-        f"{path}: LandXML has no name for a unit of {metres:.10g} m, in which the CRS counts; "
+        f"{path}: LandXML has no name for a unit of {metres:.10g} m, which is that of the CRS; "
         "reproject the input, or write another format."
     )
 

@@ -27,7 +27,7 @@ __all__ = ["N_EDGE_CLASSES", "FaceRecord", "decode_faces", "encode_faces"]
 #: Nearest points that are looked at. With 12 the far edges are 10 times as many.
 N_NEAREST = 16
 
-#: See docs/format.md, and `wavelet_core._kernels.point_faces.class_of_pair`.
+#: See docs/reference/format.md, and `wavelet_core._kernels.point_faces.class_of_pair`.
 N_EDGE_CLASSES = 8
 
 #: Coordinates beyond this have squares that are no exact floats.
@@ -57,12 +57,12 @@ def encode_faces(points: NDArray[np.int64], faces: NDArray[np.integer]) -> FaceR
     faces : (m, 3) integers
         Counter-clockwise, as `wavelet_core.mesh.triangulation.canonical_faces` orders them.
     """
-    if not _may_be_told(points):
+    if not _can_be_encoded(points):
         return None
     n = len(points)
     x, y = _local(points)
     edges = sorted_edges(_sides(faces), n)
-    answers, far = _told_by(x, y, edges)
+    answers, far = _answers_by(x, y, edges)
     triangles = triangles_of(x, y, edges)
     is_face = _are_among(faces, triangles, n)
     if np.count_nonzero(is_face) != len(faces) or not np.array_equal(triangles[is_face], faces):
@@ -71,7 +71,7 @@ def encode_faces(points: NDArray[np.int64], faces: NDArray[np.integer]) -> FaceR
 
 
 def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.int64]:
-    """Return the faces that a record tells.
+    """Return the faces that a record describes.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.in
     PyramidError
         It tells no faces on these points.
     """
-    _require(_may_be_told(points), "points that have no faces")
+    _require(_can_be_encoded(points), "points that have no faces")
     x, y = _local(points)
     edges = _edges_from(x, y, record)
     triangles = triangles_of(x, y, edges)
@@ -103,18 +103,18 @@ def _sides(faces: NDArray[np.integer]) -> NDArray[np.int32]:
     return np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
 
 
-def _told_by(
+def _answers_by(
     x: NDArray[np.float64], y: NDArray[np.float64], edges: SortedEdges
 ) -> tuple[tuple[NDArray[np.uint8], ...], NDArray[np.int32]]:
     """Return the answers to all questions, and the edges that nobody asks about."""
     pairs = near_pairs(x, y, N_NEAREST)
-    joined, is_told = edges.are_joined(pairs)
+    joined, is_asked = edges.are_joined(pairs)
     answers = tuple(joined[pairs.classes == of_class] for of_class in range(N_EDGE_CLASSES))
-    return answers, edges.rows()[~is_told]
+    return answers, edges.rows()[~is_asked]
 
 
 def _edges_from(x: NDArray[np.float64], y: NDArray[np.float64], record: FaceRecord) -> SortedEdges:
-    """Return the edges that a record of any origin tells."""
+    """Return the edges that a record of any origin describes."""
     n = len(x)
     pairs = near_pairs(x, y, N_NEAREST)
     joined = np.zeros(pairs.classes.shape, dtype=bool)
@@ -135,7 +135,7 @@ def _edges_from(x: NDArray[np.float64], y: NDArray[np.float64], record: FaceReco
     return sorted_edges(np.concatenate([near, far.astype(np.int32)]), n)
 
 
-def _may_be_told(points: NDArray[np.int64]) -> bool:
+def _can_be_encoded(points: NDArray[np.int64]) -> bool:
     """Whether sums of products of the points' distances are exact."""
     return len(points) > N_NEAREST + 1 and bool(np.ptp(points, axis=0).max() < LARGEST_COORDINATE)
 

@@ -162,7 +162,7 @@ def _compare(stored: Fields, actual: dict[str, Any]) -> None:
     """Raise unless the checksums are those stored, naming the first part that is another."""
     of_metadata = stored.fields("metadata")
     if changed := {*of_metadata} ^ {*actual["metadata"]}:
-        raise PyramidError(f"the metadata {min(changed)!r} came or went; {_RESTORE}")
+        raise PyramidError(f"the metadata {min(changed)!r} was added or removed; {_RESTORE}")
     for name, checksum in actual["metadata"].items():
         if of_metadata[name] != checksum:
             raise PyramidError(f"the checksum of the metadata {name!r} is wrong, {_CHANGED}")

@@ -7,8 +7,8 @@ Tables, beside the layers that other modules add:
 * ``wavelet_arrays`` and ``wavelet_chunks``: arrays of plain numbers, see
   `wavelet_gis.io.pyramid.array_tables`.
 
-docs/format.md is the description for those who write a reader. Reading trusts nothing: types,
-sizes, shapes and index ranges are checked before use.
+docs/reference/format.md describes the format for those who write a reader. Reading trusts nothing:
+types, sizes, shapes and index ranges are checked before use.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ __all__ = [
 ]
 
 #: Part of the time of writing that is spent before the first array is written.
-_SHARE_OF_TELLING = 0.5
+_SHARE_OF_ENCODING = 0.5
 
 #: Part of the time of writing that is spent before the file is read back.
 _SHARE_OF_WRITING = 0.8
@@ -109,7 +109,7 @@ def write_pyramid(
     OutputFileError
         When the file cannot be written, or its reader does not take it.
     """
-    metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, _SHARE_OF_TELLING))
+    metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, _SHARE_OF_ENCODING))
     texts = {name: json.dumps(value, allow_nan=False, sort_keys=True) for name, value in
              metadata.items()}  # fmt: skip
     total, done = sum(array.nbytes for array in arrays.values()) or 1, 0
@@ -122,7 +122,7 @@ def write_pyramid(
         write_level_rows(connection, geo)
         for n_bytes in write_arrays(connection, arrays, pool):
             done += n_bytes
-            share = _SHARE_OF_TELLING + (_SHARE_OF_WRITING - _SHARE_OF_TELLING) * done / total
+            share = _SHARE_OF_ENCODING + (_SHARE_OF_WRITING - _SHARE_OF_ENCODING) * done / total
             report(progress, share, _CANCELLED)
         entries = read_entries(connection, with_checksums=True)
         checksums = checksums_of(texts, read_level_rows(connection), entries)

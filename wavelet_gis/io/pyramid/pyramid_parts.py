@@ -150,7 +150,7 @@ def pyramid_to_parts(
 def pyramid_from_parts(
     contents: Contents, arrays: StoredArrays, written: Pyramid | None = None
 ) -> GeoPyramid:
-    """Return what a file holds; ``written``, if given, is the pyramid that its record told."""
+    """Return what a file holds; ``written``, if given, is the pyramid that its record describes."""
     metadata = contents.metadata
     fields = metadata.fields("source")
     check_source(fields)
@@ -232,7 +232,7 @@ def _part_from_parts(contents: Contents, arrays: StoredArrays, index: int) -> Ge
     record = record_from_parts(metadata.fields("record"), arrays, len(design["channels"]), index)
     ids = record.parts[index].ids
     if ids is None or ids[-1] >= (origin.n_vertices or 0):
-        raise PyramidError(f"part {index} has vertices that the input has not.")
+        raise PyramidError(f"part {index} has vertices that are not in the input.")
     plan = _plan_of(origin, frame, ids)
     locked = _locked_from(described, arrays)
     if locked is not None and len(locked) != origin.n_vertices:

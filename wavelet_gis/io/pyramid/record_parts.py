@@ -3,7 +3,7 @@
 What `wavelet_core.lifting.recorded` tells of a pyramid goes into the arrays
 ``parts/K/going`` (bits), ``parts/K/targets`` (two to a byte) and, for every part but the first,
 ``parts/K/ids``, ``faces``, ``heights``, ``integrals`` and ``unchanged``; the faces of points into
-``faces/answers``, ``far`` and ``holes``. See docs/format.md.
+``faces/answers``, ``far`` and ``holes``. See docs/reference/format.md.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ def faces_to_parts(
 def faces_from_parts(
     fields: Fields, arrays: ArraySource, places: NDArray[np.int64] | None
 ) -> NDArray[Any]:
-    """Return the faces that `faces_to_parts` told, ``(m, 3)``.
+    """Return the faces that `faces_to_parts` stored, ``(m, 3)``.
 
     Raises
     ------

@@ -77,7 +77,7 @@ def source_arrays(
 
 
 def check_source(fields: Fields) -> None:
-    """Check what a summary tells of the source; the rest is checked when it is used."""
+    """Check what a summary says of the source; the rest is checked when it is used."""
     kind = fields.choice("kind", ("raster", "points", "tin"))
     if kind == "raster":
         if len(fields.integers("shape", 1)) != 2:

@@ -14,9 +14,9 @@ __all__ = [
     "NO_ELEVATION",
     "NO_TAG",
     "doubtful_value",
+    "implausible_cells",
     "impossible_values",
-    "tell_of_doubts",
-    "told_holes",
+    "warn_of_doubts",
 ]
 
 #: Given for a nodata value, it says that there is none.
@@ -71,8 +71,10 @@ def doubtful_value(values: NDArray[Any]) -> tuple[float, int, float] | None:
     return None
 
 
-def told_holes(values: NDArray[Any], valid: NDArray[np.bool_], name: str) -> NDArray[np.bool_]:
-    """Return which cells can be no elevations though they are no holes yet, and warn of them.
+def implausible_cells(
+    values: NDArray[Any], valid: NDArray[np.bool_], name: str
+) -> NDArray[np.bool_]:
+    """Return which cells hold what cannot be an elevation but is not nodata yet, and warn of them.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ def told_holes(values: NDArray[Any], valid: NDArray[np.bool_], name: str) -> NDA
     return holes
 
 
-def tell_of_doubts(values: NDArray[Any], name: str) -> None:
+def warn_of_doubts(values: NDArray[Any], name: str) -> None:
     """Warn of a value that may stand for nothing.
 
     Parameters

@@ -63,7 +63,7 @@ def check_raster(
                 raise OutputFileError(f"it holds {dataset.dtypes[0]} for {dtype}")
             # GDAL writes a transform that says nothing as none.
             if tuple(dataset.transform)[:6] != tuple(geometry.transform):
-                raise OutputFileError("its geotransform is another")
+                raise OutputFileError("its geotransform differs")
             if repr(_plain(dataset.nodata)) != repr(_plain(nodata)):
                 raise OutputFileError(f"its nodata value is {dataset.nodata} for {nodata}")
         at_once = max(_CELLS_AT_ONCE // max(n_columns, 1), 1)
@@ -80,7 +80,7 @@ def check_raster(
                     fault = "its values differ" if is_exact else "the format changes the values"
                     raise OutputFileError(f"{fault} from row {start} on")
         if valid is not None and not np.array_equal(dataset.read_masks(1) != 0, valid):
-            raise OutputFileError("its mask is another")
+            raise OutputFileError("its mask differs")
 
 
 def _plain(value: float | int | None) -> float | None:

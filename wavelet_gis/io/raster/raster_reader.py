@@ -15,7 +15,7 @@ from wavelet_gis.errors import InputFileError, RasterWarning
 from wavelet_gis.io.libraries import silent_libraries
 from wavelet_gis.io.names import file_of, gdal_path
 from wavelet_gis.io.raster.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
-from wavelet_gis.io.raster.nodata import NO_TAG, tell_of_doubts, told_holes
+from wavelet_gis.io.raster.nodata import NO_TAG, implausible_cells, warn_of_doubts
 from wavelet_gis.io.raster.remote import NO_NETWORK, remote_reference
 from wavelet_gis.model.dem import Dem, GridGeometry, require_sound
 from wavelet_gis.notes import warn
@@ -51,7 +51,7 @@ def read_dem(
     offline: bool = False,
     window: CellWindow | None = None,
 ) -> tuple[Dem, Georeference]:
-    """Return one band of a raster, and what the file tells of its coordinates.
+    """Return one band of a raster, and what the file says of its coordinates.
 
     Parameters
     ----------
@@ -116,19 +116,19 @@ def read_dem(
     except (RasterioError, CPLE_BaseError, UnicodeDecodeError) as error:
         if remote is not None:
             raise InputFileError(
-                f"{path}: {remote}, which this raster reads over the network, cannot be had; fetch "
-                "it first and name the local file."
+                f"{path}: {remote}, which this raster reads over the network, cannot be fetched; "
+                "download it first and name the local file."
             ) from error
         raise InputFileError(f"{path}: {_reason(error, path)}") from error
     require_sound(dem, os.fspath(path))
     if said:
         _warn(
             "raster_read_with_complaints",
-            "{path}: read, but not without complaint of GDAL: {complaint}",
+            "{path}: read, but GDAL reported: {complaint}",
             path=os.fspath(path),
             complaint=said[0],
         )
-    tell_of_doubts(dem.values[dem.valid], os.fspath(path))
+    warn_of_doubts(dem.values[dem.valid], os.fspath(path))
     return dem, place
 
 
@@ -159,7 +159,7 @@ def _read_band(
         )
     if band is None and dataset.count > 1:
         raise InputFileError(
-            "{path}: the raster has {n_bands} bands; choose the one with the elevations by {0}.",
+            "{path}: the raster has {n_bands} bands; choose the elevation band with {0}.",
             "band",
             path=path,
             n_bands=dataset.count,
@@ -215,7 +215,7 @@ def _valid_cells(
     if values.dtype.kind == "f":
         valid &= np.isfinite(values)
     if nodata is None:
-        valid &= ~told_holes(values, valid, os.fspath(path))
+        valid &= ~implausible_cells(values, valid, os.fspath(path))
     elif nodata != NO_TAG:
         number = float(nodata)
         info = np.iinfo(values.dtype) if values.dtype.kind in "iu" else None

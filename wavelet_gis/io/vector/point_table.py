@@ -86,7 +86,7 @@ def _columns(name: str, names: list[str], attributes: tuple[str, ...]) -> list[i
     if not names:
         if attributes:
             raise InputFileError(
-                "{name}: the table has no line of names, so {0} cannot be told; leave it out.",
+                "{name}: the table has no header line, so {0} cannot be found; leave it out.",
                 "attributes",
                 name=name,
             )

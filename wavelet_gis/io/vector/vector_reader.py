@@ -114,7 +114,7 @@ def read_shapes(
         warn(
             LayerWarning,
             "layer_read_with_complaints",
-            "{name}: read, but not without complaint of GDAL: {complaint}",
+            "{name}: read, but GDAL reported: {complaint}",
             name=name,
             complaint=said[0],
         )
@@ -129,7 +129,7 @@ def _only_layer(name: str, layers: NDArray[Any]) -> str:
     if not spatial:
         raise InputFileError(f"{name}: the layer cannot be read (there is none with shapes).")
     raise InputFileError(
-        "{name}: there are the layers {layers}; name one by {0}.",
+        "{name}: there are the layers {layers}; name one with {0}.",
         "layer",
         name=name,
         layers=", ".join(spatial),

@@ -111,7 +111,7 @@ def cloud_vertices(
     vertices = frame.to_local(cloud.coordinates()[used])
     if not np.isfinite(vertices).all():
         raise InputFileError(
-            "the cloud has coordinates that are no finite numbers; check the scales and offsets "
+            "the cloud has coordinates that are not finite; check the scales and offsets "
             "in its header."
         )
     merged, stored = merged_points(vertices, cloud.integers[used, 2], rule)
@@ -122,7 +122,7 @@ def cloud_vertices(
         attributes[:, k] = attribute.lifted()[used][kept]
         if not np.isfinite(attributes[:, k]).all():
             raise InputFileError(
-                "attribute {attribute} has values that are no finite numbers; leave it out of {0}.",
+                "attribute {attribute} has values that are not finite; leave it out of {0}.",
                 "attributes",
                 attribute=attribute.name,
             )

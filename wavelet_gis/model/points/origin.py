@@ -22,6 +22,7 @@ from wavelet_gis.model.exact_restore import (
     kept_column,
     nearest_of_dtype,
     number_dtype,
+    require_checksum,
 )
 from wavelet_gis.model.points.aside import Aside, MergedHeights
 from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
@@ -232,7 +233,9 @@ class CloudOrigin:
         if len(columns) < len(kept):
             return None
         if any(len(values) != self.n_vertices for values in columns):
-            raise PyramidError("the cloud has other points than numbers; analyse the input anew.")
+            raise PyramidError(
+                "the cloud's points do not match their numbers; analyse the input anew."
+            )
         vertices = np.column_stack(columns[:3]) * self.cloud.scales + self.cloud.offsets
         attributes = np.empty((self.n_vertices, len(columns) - 3))
         for k, attribute in enumerate(self.cloud.attributes):
@@ -272,11 +275,8 @@ class CloudOrigin:
             attributes=attributes,
             is_altered=not self.is_exact,
         )
-        if self.is_exact and checksum(cloud.columns()) != self.checksum:
-            raise PyramidError(
-                "the reconstruction is not exactly the original (its checksum differs); "
-                "the file is damaged, analyse the input anew."
-            )
+        if self.is_exact:
+            require_checksum(cloud.columns(), self.checksum)
         return cloud
 
     def _full_column(

@@ -134,7 +134,7 @@ def make_cut(folder: str, number: int) -> dict[str, Any]:
     try:
         with collected():
             record |= {"status": "whole", **_cut(Path(folder), plan, number)}
-    except WaveletError as error:
+    except (WaveletError, OSError) as error:  # a full disk, of whatever kind
         record |= {"status": "failed", "reason": " ".join(str(error).split())}
     kept = Path(folder) / SOURCES / f"{number:05d}.json"
     with new_file(kept, overwrite=True) as scratch:

@@ -16,7 +16,7 @@ from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
 from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, laspy_header
-from wavelet_gis.io.names import files_of, told_as_one
+from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.points.aside import DUPLICATE_RULES
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import frame_of_bounds, require_plan
@@ -84,6 +84,8 @@ def plan_of_clouds(
     OptionError
         A size or a number of levels that makes no tiles.
     """
+    import shapely
+
     from wavelet_gis.crs.lookup import coordinate_system
 
     if not 1 <= levels <= 64:
@@ -115,7 +117,7 @@ def plan_of_clouds(
         ],
     )
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
-    name = told_as_one(paths)
+    name = joint_name(paths)
     scales, offsets = heads[0].layout.scales, heads[0].layout.offsets
     low, high = _extents(paths, heads)
     corners = np.array([[*low.min(axis=0), 0], [*high.max(axis=0), 0]])
@@ -148,8 +150,8 @@ def plan_of_clouds(
             "them to like scales first (pdal translate --writers.las.scale_x and so on)."
         )
     n_points = sum(head.layout.n_points for head in heads)
-    sizes = (high - low).astype(np.float64) * (p, q)
-    spacing = max(round(float(np.sqrt(sizes.prod(axis=1).sum() / n_points))), 1)
+    boxes = shapely.box(*(low * (p, q)).T, *(high * (p, q)).T)  # flight lines overlap
+    spacing = max(round(float(np.sqrt(shapely.union_all(boxes).area / n_points))), 1)
     rows, columns = _ends(tile, shape, (scales[0], scales[1]), (p, q), spacing, n_points)
     shortest = min(np.diff(rows).min() * q, np.diff(columns).min() * p)
     files = [
@@ -263,7 +265,7 @@ def _extents(
     low, high = np.array(lows), np.array(highs)
     if max(-low.min(), high.max()) > _LARGEST_SHIFT:
         raise InputFileError(
-            f"{told_as_one(list(paths))}: the files lie too far from one another for coordinates "
+            f"{joint_name(list(paths))}: the files lie too far from one another for coordinates "
             f"in steps of {max(map(abs, first.scales)):g}; tile them in parts."
         )
     return low.astype(np.int64), high.astype(np.int64)

@@ -17,7 +17,7 @@ from wavelet_gis.io.las.cloud_writer import record_array, write_records
 from wavelet_gis.io.las.layout import parse_layout
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.tiles.cloud.cut import SOURCES, CutPoints, record_dtype, source_record
-from wavelet_gis.tiles.cloud.tile import FILE, ROW, inputs_of
+from wavelet_gis.tiles.cloud.tile import FILE, ROW
 from wavelet_gis.tiles.index import TileIndex
 from wavelet_gis.tiles.piece import LOOSE, PIECES, sha256_of
 from wavelet_gis.tiles.plan import Piece
@@ -121,8 +121,8 @@ def _parts(index: TileIndex, number: int, dtype: np.dtype[Any]) -> Iterator[CutP
     """Yield the points of the tiles that an input has points in."""
     from wavelet_gis.io.pyramid.pyramid_file import read_input
 
-    for piece in index.plan.pieces(0):
-        if number not in inputs_of(index.plan, piece):
+    for piece, numbers in index.plan.inputs_of_tiles().items():
+        if number not in numbers:
             continue
         record = index.records.get(piece, {})
         status = record.get("status", "missing")

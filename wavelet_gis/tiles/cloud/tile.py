@@ -37,7 +37,7 @@ from wavelet_gis.tiles.cloud.cut import SOURCES, CutPoints, points_of
 from wavelet_gis.tiles.plan import Piece, TilePlan
 from wavelet_gis.workflows.analyse import analyse
 
-__all__ = ["FILE", "ROW", "CloudTile", "cloud_tile", "inputs_of", "ring_of", "tile_pyramid"]
+__all__ = ["FILE", "ROW", "CloudTile", "cloud_tile", "ring_of", "tile_pyramid"]
 
 #: Fields that the points of a tile carry besides their own: file and row, for the way back.
 FILE, ROW = "tile/file", "tile/row"
@@ -59,21 +59,6 @@ class CloudTile(NamedTuple):
     ring: Ring
 
 
-def inputs_of(plan: TilePlan, piece: Piece) -> list[int]:
-    """Return the numbers of the files that may have points in a tile or within reach of it."""
-    assert plan.points is not None
-    top, left, bottom, right = plan.cells(piece)
-    in_rows, in_columns = plan.points.reach_in_cells
-    return [
-        number
-        for number, file in enumerate(plan.files)
-        if file.row <= bottom + in_rows
-        and file.row + file.height > top - in_rows
-        and file.column <= right + in_columns
-        and file.column + file.width > left - in_columns
-    ]
-
-
 def cloud_tile(folder: str | os.PathLike[str], plan: TilePlan, piece: Piece) -> CloudTile | None:
     """Return the points of a tile; None where it has none.
 
@@ -85,7 +70,7 @@ def cloud_tile(folder: str | os.PathLike[str], plan: TilePlan, piece: Piece) -> 
     piece : Piece
         A tile.
     """
-    around = points_of(folder, plan, piece, inputs_of(plan, piece))
+    around = points_of(folder, plan, piece, plan.inputs_of(piece))
     if around is None:
         return None
     lattice, reading = plan.points, plan.reading

@@ -18,14 +18,17 @@ __all__ = ["ERROR_OF_SPACING", "TilesetPlan", "plan_tiles"]
 #: Part of the spacing of the points that the finest zoom may be off, where nothing else is asked.
 ERROR_OF_SPACING = 0.1
 
-#: Of a zoom's error, what chords of level ground may be below the round earth.
+#: Of a zoom's error, what chords of level ground may be below the round earth; a limit on the error
+#: there, which no point of the input measures. Crops of two DEMs with level ground around them take
+#: 55 to 60 % more vertices with half of it and 27 to 32 % fewer with twice as much.
 _SHARE_OF_CHORDS = 0.4
 
 _MOST_PARTS = 64
 _SMALLEST_STEP = 2.0**-10
 _LARGEST_ZOOM = 22
 
-#: Steps of height that an error must be, at least, so that rounding is a small part of it.
+#: Steps of height that an error must be, at least, so that rounding is a small part of it: a limit,
+#: which refuses smaller errors and changes no tile.
 _STEPS_OF_ERROR = 4
 
 

@@ -34,14 +34,16 @@ __all__ = [
 #: Metres.
 EARTH_RADIUS = 6378137.0
 
-#: Points so near the border of a tile, in steps, are not made vertices: they would be slivers.
+#: Points so near the border of a tile, in steps, are not made vertices: they would be slivers. With
+#: 1 and with 4 the bytes of two DEMs are the same to 0.05 %.
 _NEAR_BORDER = 2
 
-#: Rounds in which folded faces are looked after.
+#: Rounds in which folded faces are looked after, at most. On two DEMs 16 give the same tiles.
 _ROUNDS = 8
 
 #: Faces lower than this, in steps of their tile, are turned: rounded to those steps, points beside
-#: them would be on the wrong side of an upright wall.
+#: them would be on the wrong side of an upright wall. Half of it takes 20 % more bytes on
+#: TM1, which has such walls, and twice as much 0.1 % more.
 _LEAST_ALTITUDE = 1.5
 
 _AROUND = np.array([(a, b) for a in (-1, 0, 1) for b in (-1, 0, 1) if (a, b) != (0, 0)])

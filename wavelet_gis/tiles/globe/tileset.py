@@ -44,14 +44,18 @@ __all__ = ["LAYER", "Tileset", "ZoomFigures", "globe_points", "terrain_tiles"]
 LAYER = "layer.json"
 
 #: Shares of a zoom's error that vertices may be off, tried one after the other until all points of
-#: the input keep it; between tries the points that do not are made vertices that stay.
+#: the input keep it; between tries the points that do not are made vertices that stay. On crops of
+#: Jacksboro and TM1, 0.4 instead of 0.8 takes 38 to 43 % more bytes and 0.9 takes 4 to 6 % fewer;
+#: 0.8 once takes 32 to 67 % more, and ten times what five times do.
 _SHARES = (0.8, 0.8, 0.8, 0.8, 0.8, 0.6, 0.4, 0.2, 0.0)
 
-#: Of the finest zoom's error, what the chains along edges may be off.
+#: Of the finest zoom's error, what the chains along edges may be off. Half of it takes 2 % more
+#: bytes on the same crops, twice as much 1 to 2 % fewer.
 _SHARE_OF_CHAINS = 0.4
 
 #: Of a zoom's error, what the finer mesh may be off that is handed on to the next coarser zoom. A
-#: TIN of a TIN is off by more between vertices than at them, so those need room.
+#: TIN of a TIN is off by more between vertices than at them, so those need room. From half of it to
+#: twice as much nothing changes on the same crops (0.2 %); with four times as much 26 % more bytes.
 _SHARE_HANDED_ON = 1 / 16
 
 
@@ -178,7 +182,7 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
         mesh, name = data.pyramid.synthesise(level), data.source_name
     if data.system.wkt is None or data.system.kind == "unknown":
         raise CrsError(
-            "{name}: nothing tells where on earth this is; give its CRS with {0}.",
+            "{name}: nothing says where on earth this is; give its CRS with {0}.",
             "crs",
             name=name,
         )
@@ -217,7 +221,7 @@ class _Writer:
         report(progress, 0.03)
 
     def run(self, name: str) -> Tileset:
-        """Write all tiles and the file that tells of them."""
+        """Write all tiles and the file that lists them."""
         plan, source = self._plan, self._source
         low, high = source.extent() * (tile_width(plan.zoom) / STEPS) - [180.0, 90.0]
         ranges = ranges_of((*low.tolist(), *high.tolist()), plan.zoom)
@@ -246,7 +250,7 @@ class _Writer:
                     tiles.zoom, len(drawn), n_vertices, n_bytes, plan.error_at(tiles.zoom), worst
                 )
             )
-        self._tell_of_errors(figures, name)
+        self._warn_of_errors(figures, name)
         longitude, latitude = self._globe.longitude, self._globe.latitude
         west, south, east, north = (
             float(value)
@@ -257,7 +261,7 @@ class _Writer:
         (self._folder / LAYER).write_text(json.dumps(layer, indent=1) + "\n", "utf-8")
         return Tileset(bounds, tuple(figures[::-1]), plan.height_step)
 
-    def _tell_of_errors(self, figures: list[ZoomFigures], name: str) -> None:
+    def _warn_of_errors(self, figures: list[ZoomFigures], name: str) -> None:
         """Warn where a zoom has not kept its error, as on points like a field of spikes."""
         above = [zoom for zoom in figures if zoom.max_error > zoom.promised]
         if above:

@@ -17,7 +17,9 @@ from wavelet_core.progress import Progress, part_of, report
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-#: Starts of k means, of which the best is kept, and rounds of each at most.
+#: Starts of k means, of which the best is kept, and rounds of each at most, a limit. On spectra
+#: of two DEMs, with 3 and 6 clusters, 4 starts leave a sum of squares 0.2 to 0.9 % above the least
+#: that 80 find; 2 leave 0.3 to 1.7 %, and 8 leave 0 to 0.6 % for twice the time.
 N_STARTS, MOST_ROUNDS = 4, 300
 #: Centres that moved less than this part of the mean variance of a column have settled.
 SETTLED = 1e-4

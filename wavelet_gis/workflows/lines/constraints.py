@@ -1,7 +1,7 @@
 """Lines, an outline and fixed points in a terrain: from shapes in its frame to a terrain with them.
 
 The command line, Python and QGIS come here with what their own geometry libraries have cut where it
-crosses. What comes out is a TIN, whatever went in: it has vertices that the input has not.
+crosses. What comes out is a TIN, whatever went in: it has vertices that are not in the input.
 """
 
 from __future__ import annotations

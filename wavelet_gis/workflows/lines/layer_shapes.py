@@ -88,7 +88,7 @@ def shapes_in_frame(
         except InputFileError as error:
             if error.options:  # names the option for a layer of the input
                 raise InputFileError(
-                    "{path}: {0} is to be a file of one layer; copy that layer into a file of its "
+                    "{path}: {0} must be a file of one layer; copy that layer into a file of its "
                     "own.",
                     option,
                     path=name,
@@ -164,7 +164,7 @@ def _into_frame(place: Place, name: str, wkt: str | None) -> Callable[[FloatArra
     def move(coordinates: FloatArray) -> FloatArray:
         if not np.isfinite(coordinates[:, :2]).all() or np.isinf(coordinates[:, 2]).any():
             raise InputFileError(
-                "{name}: a coordinate is no finite number; leave that shape out.", name=name
+                "{name}: a coordinate is not finite; leave that shape out.", name=name
             )
         moved = np.array(coordinates, dtype=np.float64)
         if is_moved:
@@ -172,7 +172,7 @@ def _into_frame(place: Place, name: str, wkt: str | None) -> Callable[[FloatArra
                 moved[:, 0], moved[:, 1] = projected(there, here, *coordinates[:, :2].T)
             except CrsError as error:
                 raise CrsError(
-                    "{name}: {there} cannot be brought to {here} here; transform the layer first.",
+                    "{name}: {there} cannot be transformed to {here}; reproject the layer first.",
                     name=name,
                     there=there.name,
                     here=here.name,

@@ -175,7 +175,7 @@ def _cut(
         share = whole.intersection(area).length / whole.length if whole.length else 0.0
         if share == 0:
             raise _beside(terrain, "breaklines")
-        _tell_of_cuts(terrain, lines, 1 - share)
+        _note_cuts(terrain, lines, 1 - share)
     pieces = shapely.get_parts(shapely.union_all([whole, outline, domain.boundary]))
     middles = shapely.line_interpolate_point(pieces, 0.5, normalized=True)
     shapely.prepare(area)
@@ -197,7 +197,7 @@ def _cut(
     )
 
 
-def _tell_of_cuts(terrain: Terrain, lines: Shapes, share_outside: float) -> None:
+def _note_cuts(terrain: Terrain, lines: Shapes, share_outside: float) -> None:
     import shapely
 
     flat = shapely.force_2d(lines)
@@ -213,7 +213,7 @@ def _tell_of_cuts(terrain: Terrain, lines: Shapes, share_outside: float) -> None
     if share_outside > 1e-6:
         note(
             "breaklines_outside",
-            "{name}: {share:.1%} of the length of the breaklines is beside the terrain and left "
+            "{name}: {share:.1%} of the length of the breaklines is outside the terrain and left "
             "out",
             name=terrain.name,
             share=share_outside,
@@ -293,7 +293,7 @@ def _points_within(terrain: Terrain, shapes: Shapes, area: Any) -> FloatArray:
     if not inside.all():
         note(
             "fixed_points_outside",
-            "{name}: {n_points} fixed points are beside the terrain and left out",
+            "{name}: {n_points} fixed points are outside the terrain and left out",
             name=terrain.name,
             n_points=int(np.count_nonzero(~inside)),
         )

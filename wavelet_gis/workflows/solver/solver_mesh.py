@@ -61,7 +61,7 @@ class SolverRules(NamedTuple):
         shortest, longest = self.shortest_edge or 0.0, self.size_bound or np.inf
         if 2 * shortest > longest:
             raise OptionError(
-                "{0} is more than half of {1}, or of the edge of {2}; no mesh is that even.",
+                "{0} is more than half of {1}, or of the edge of {2}; no mesh can be that uniform.",
                 "shortest_edge",
                 "longest_edge",
                 "max_area",

@@ -39,7 +39,7 @@ def is_by_place(
 ) -> bool:
     """Return whether a tolerance differs from place to place."""
     if zones is None and zone_field is not None:
-        raise OptionError("{0} is of {1}; give both or none.", "zone_field", "zones")
+        raise OptionError("{0} goes with {1}; give both or neither.", "zone_field", "zones")
     return zones is not None or not (max_error is None or _is_number(max_error))
 
 

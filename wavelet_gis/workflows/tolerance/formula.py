@@ -89,7 +89,7 @@ def value_of(part: ast.expr, variables: Mapping[str, Callable[[], FloatArray]], 
                     reason=str(error).split("\n")[0],
                 ) from error
     raise OptionError(
-        "{0} {text!r} is no raster that is there, and as a formula {part!r} is not understood; "
+        "{0} {text!r} is not an existing raster, and as a formula {part!r} is not understood; "
         "formulas have numbers, {names}, + - * / **, comparisons and {calls}.",
         "max_error",
         text=text,

@@ -169,7 +169,7 @@ def test_array_dimensions_and_clashing_names(tmp_path):
 def test_unknown_and_repeated_attributes(las):
     with pytest.raises(InputFileError, match=r"no dimension 'colour'; the file has .*gps_time"):
         read_cloud(las, attributes=["colour"])
-    with pytest.raises(InputFileError, match="asked for twice"):
+    with pytest.raises(InputFileError, match="requested twice"):
         read_cloud(las, attributes=["class", "classification"])
     for axis in ("X", "z"):
         with pytest.raises(InputFileError, match="no dimension"):

@@ -23,12 +23,19 @@ DESIGNS = {
 }
 
 
+@pytest.fixture(params=[0.25, 0.0], ids=["parts", "coarsest level"])
+def share(request):
+    """Return by how much vertices must have become fewer for a part; with 0 the coarsest is one."""
+    return request.param
+
+
 @pytest.fixture(params=list(DESIGNS))
-def geo(request, tmp_path, monkeypatch):
+def geo(request, share, tmp_path, monkeypatch):
     """Return a pyramid that is written in parts, small as it is."""
     monkeypatch.setattr(recorded, "LEAST_IN_PARTS", 1000)
     monkeypatch.setattr(recorded, "LEAST_IN_PART", 10)
-    monkeypatch.setattr(recorded, "PART_SHARE", 1 / 4)
+    monkeypatch.setattr(recorded, "PART_SHARE", share)
+    monkeypatch.setattr(recorded, "COARSEST_SHARE", 0.5)
     values = hills(50, 60).astype("f4")
     values[5:9, 7:12] = -9999
     if request.param == "cloud":

@@ -120,8 +120,11 @@ def test_the_piece_of_metadata_is_named(copy, name):
         ("UPDATE wavelet_arrays SET checksum = NULL WHERE id = 3", "has no checksum"),
         ("ALTER TABLE wavelet_arrays DROP COLUMN checksum", "checksums of the arrays are missing"),
         ("DELETE FROM wavelet_metadata WHERE name = 'checksums'", "checksums is missing"),
-        ("DELETE FROM wavelet_metadata WHERE name = 'history'", "'history' came or went"),
-        ("INSERT INTO wavelet_metadata (name, value) VALUES ('more', '1')", "'more' came or went"),
+        ("DELETE FROM wavelet_metadata WHERE name = 'history'", "'history' was added or removed"),
+        (
+            "INSERT INTO wavelet_metadata (name, value) VALUES ('more', '1')",
+            "'more' was added or removed",
+        ),
         (STRIP[1], "checksum of the metadata 'format' is wrong"),
         (
             "UPDATE wavelet_metadata SET value = '{}' WHERE name = 'checksums'",

@@ -155,7 +155,7 @@ def test_other_formats_of_gdal(tmp_path, driver):
 
 def test_one_of_several_bands(tmp_path):
     source = write_tif(tmp_path / "a.tif", np.stack([hills(seed=1), hills(seed=2)]).astype("f4"))
-    with pytest.raises(InputFileError, match=r"2 bands; choose .* by band"):
+    with pytest.raises(InputFileError, match=r"2 bands; choose .* with band"):
         read_dem(source)
     with pytest.raises(InputFileError, match="no band 3"):
         read_dem(source, band=3)

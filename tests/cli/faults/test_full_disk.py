@@ -1,0 +1,155 @@
+"""A disk that fills up at any byte: exit 1, one line, the old file whole, nothing left behind.
+
+The limit on a file's size (``ulimit -f``) stands for the disk: it fails at the same calls, at a
+byte that the test chooses, and needs no rights. To try every 50 kB of each output, apart from the
+suite::
+
+    FULL_DISK_LIMITS=1000000 pytest tests/cli/faults/test_full_disk.py --junitxml=full_disk.xml \\
+        -o junit_family=xunit1
+
+The property ``limits`` of each case tells how many.
+"""
+
+import contextlib
+import os
+import shutil
+import subprocess
+
+import pytest
+from gis.samples import hills, write_las, write_tif
+
+from wavelet_gis.cli.main import main
+
+resource = pytest.importorskip("resource", reason="limits of POSIX")
+
+STEP = 50_000
+FIRST = 4_000  # what pytest captures goes into a file, too
+#: Limits tried for one output, spread over its size; set the variable to try each.
+MOST = int(os.environ.get("FULL_DISK_LIMITS", "2"))
+
+JOBS = [
+    *[("reconstruct", "dem", f"x{s}") for s in (".tif", ".img", ".asc")],
+    *[("reconstruct", "cloud", f"x{s}") for s in (".las", ".laz")],
+    ("extract", "dem", "x.tif"),
+    ("extract", "dem", "x.tif", "--cog"),
+    *[
+        ("extract", "dem", f"x{s}", "--level", "1")
+        for s in (".gpkg", ".ply", ".2dm", ".obj", ".stl", ".glb", ".xml", ".dxf")
+    ],
+    *[("extract", "cloud", f"x{s}", "--level", "1") for s in (".tif", ".gpkg", ".ply")],
+    *[("details", "dem", f"x{s}") for s in (".tif", ".gpkg", ".png", ".svg", ".pdf")],
+    *[("details", "dem", f"x{s}", "--what", "shape") for s in (".tif", ".gpkg")],
+    *[("cluster", "dem", f"x{s}") for s in (".tif", ".gpkg")],
+    *[("filter", "dem", f"x{s}", "--gain", "0=0") for s in (".tif", ".gpkg")],
+    *[("filter", "cloud", f"x{s}", "--gain", "0=0") for s in (".las", ".laz", ".gpkg")],
+    ("report", "dem", "x.html"),
+    ("analyse", "input", "x.gpkg", "--levels", "1"),
+    ("analyse", "points", "x.gpkg", "--levels", "1"),
+    *[
+        ("simplify", "input", f"x{s}", "--vertices", "3000")
+        for s in (".tif", ".gpkg", ".ply", ".2dm", ".obj", ".stl", ".glb", ".xml", ".dxf")
+    ],
+]
+
+
+@pytest.fixture(scope="module")
+def sources(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("full")
+    dem = write_tif(folder / "dem.tif", hills(110, 120).astype("f4"))
+    cloud = write_las(folder / "cloud.las", 4000)
+    for source in (dem, cloud):
+        pyramid = str(source.with_suffix(".gpkg"))
+        assert main(["analyse", str(source), pyramid, "--levels", "2", "--quiet"]) == 0
+    return {
+        "input": dem,
+        "points": cloud,
+        "dem": dem.with_suffix(".gpkg"),
+        "cloud": cloud.with_suffix(".gpkg"),
+    }
+
+
+@contextlib.contextmanager
+def files_limited_to(n_bytes):
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (n_bytes, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize("job", JOBS, ids=lambda job: "-".join(job[::2]))
+def test_a_file_that_does_not_fit(job, sources, tmp_path, capfd, record_property):
+    command, source, name, *options = job
+    pictures = dict.fromkeys(("png", "svg", "pdf"), "matplotlib")
+    package = {"glb": "trimesh", "dxf": "ezdxf", **pictures}.get(name[-3:])
+    if package:
+        pytest.importorskip(package)
+    output = tmp_path / name
+    line = [command, str(sources[source]), str(output), *options, "--overwrite", "--quiet"]
+    assert main(line) == 0
+    old = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    size = len(old[output])
+    limits = {*range(FIRST, size - STEP // 10, max(STEP, size // MOST)), int(0.98 * size)}
+    record_property("limits", len(limits))
+    capfd.readouterr()
+    for limit in sorted(limits):
+        with files_limited_to(limit):
+            code = main(line)
+        err = capfd.readouterr().err
+        assert code == 1, limit
+        assert err.startswith("terrain-wavelets: error: ")
+        assert err.count("\n") == 1, err
+        assert "unforeseen" not in err
+        assert ".terrain-wavelets-" not in err
+        assert {path: path.read_bytes() for path in tmp_path.iterdir()} == old, limit
+
+
+@pytest.fixture
+def tiny_disk(tmp_path):
+    """Yield a function that mounts a disk of some kilobytes."""
+    if os.name != "posix" or os.geteuid() != 0 or shutil.which("mount") is None:
+        pytest.skip("only root may mount a small disk")
+    folder = tmp_path / "disk"
+    folder.mkdir()
+
+    def mounted(kilobytes):
+        made = subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)],
+            capture_output=True,
+            check=False,
+        )
+        if made.returncode:
+            pytest.skip("this machine mounts no small disk")
+        return folder
+
+    yield mounted
+    subprocess.run(["umount", str(folder)], capture_output=True, check=False)
+
+
+@pytest.mark.parametrize(
+    ("command", "name", "options"),
+    [
+        ("reconstruct", "x.tif", []),
+        ("extract", "x.tif", []),
+        ("extract", "x.tif", ["--cog"]),
+        ("extract", "x.gpkg", []),
+        ("extract", "x.ply", ["--level", "2"]),
+        ("details", "x.tif", []),
+    ],
+)
+def test_a_disk_that_is_full(command, name, options, sources, tiny_disk, tmp_path, capfd):
+    line = [command, str(sources["dem"]), None, *options, "--overwrite", "--quiet"]
+    line[2] = str(tmp_path / name)
+    assert main(line) == 0
+    size = (tmp_path / name).stat().st_size
+    folder = tiny_disk(max(int(0.9 * size / 1000), 8))
+    (folder / name).write_bytes(b"old")
+    line[2] = str(folder / name)
+    capfd.readouterr()
+    assert main(line) == 1
+    err = capfd.readouterr().err
+    assert err.count("\n") == 1, err
+    assert "free there" in err or "disk full" in err, err
+    assert (folder / name).read_bytes() == b"old"
+    assert [path.name for path in folder.iterdir()] == [name]

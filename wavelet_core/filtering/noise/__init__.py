@@ -1,0 +1,1 @@
+"""The noise of a channel: white, correlated, by place, rounded, with outliers."""

@@ -1,0 +1,129 @@
+"""A part of a tile set: the pieces and the triangles that reach into a box or into polygons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wavelet_core import TriangleMesh
+from wavelet_core.errors import OptionError
+from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.tiles.plan import Piece, TilePlan
+
+__all__ = ["Area", "Box", "area_of"]
+
+Box = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """What is asked for of a tile set.
+
+    Attributes
+    ----------
+    plan : TilePlan
+    shape : shapely geometry or None
+        In the working frame; None for all.
+    bounds : tuple of float or None
+        Of a box, in the working frame: smallest x and y, largest x and y.
+    option : str
+        What names it, for messages.
+    """
+
+    plan: TilePlan
+    shape: Any = None
+    bounds: Box | None = None
+    option: str = "bbox"
+
+    def has_piece(self, piece: Piece) -> bool:
+        """Return whether the cells of a piece, or its border, reach into it."""
+        import shapely
+
+        if self.shape is None:
+            return True
+        x, y = footprint_of(self.plan, piece)
+        local = self.plan.local_frame
+        corners = np.column_stack([local.local_x(x), local.local_y(y)])
+        return bool(shapely.intersects(shapely.polygons(corners), self.shape))
+
+    def faces_of(self, mesh: TriangleMesh) -> NDArray[np.bool_]:
+        """Return which faces of a mesh reach into it."""
+        import shapely
+
+        if self.shape is None:
+            return np.ones(mesh.n_faces, dtype=bool)
+        corners = mesh.vertices[mesh.faces][:, :, :2]
+        x_min, y_min, x_max, y_max = self.shape.bounds
+        found: NDArray[np.bool_] = (
+            (corners.min(axis=1) <= (x_max, y_max)) & (corners.max(axis=1) >= (x_min, y_min))
+        ).all(axis=1)
+        if self.bounds is None:
+            at_stake = np.flatnonzero(found)
+            shapely.prepare(self.shape)
+            found[at_stake] = shapely.intersects(shapely.polygons(corners[at_stake]), self.shape)
+        return found
+
+
+class _Place(NamedTuple):
+    system: CoordinateSystem
+    frame: LocalFrame
+
+
+def area_of(plan: TilePlan, bbox: Box | None, polygon: Any) -> Area:
+    """Return the area that a box, or polygons, are; all where neither is given.
+
+    Parameters
+    ----------
+    plan : TilePlan
+    bbox : tuple of float or None
+        Smallest x and y, largest x and y, in the coordinates of the input.
+    polygon : path, GeoDataFrame or None
+        A vector file of polygons, in any CRS.
+
+    Raises
+    ------
+    OptionError
+        Both, or a box without an inside.
+    InputFileError, CrsError
+        Polygons that cannot be read, or not be brought to the CRS of the tiles.
+    """
+    import shapely
+
+    if bbox is not None and polygon is not None:
+        raise OptionError("give one of {0} and {1}.", "bbox", "polygon")
+    if polygon is not None:
+        from wavelet_gis.workflows.lines.layer_shapes import POLYGONS, shapes_in_frame
+
+        place = _Place(plan.coordinate_system, plan.local_frame)
+        shapes, _ = shapes_in_frame(place, polygon, "polygon", POLYGONS)
+        return Area(plan, shapely.union_all(shapely.force_2d(shapes)), option="polygon")
+    if bbox is None:
+        return Area(plan)
+    if not (bbox[0] < bbox[2] and bbox[1] < bbox[3]):
+        raise OptionError(
+            "{0} is {bbox}; give the smallest x and y, then the largest.", "bbox", bbox=list(bbox)
+        )
+    frame = plan.local_frame
+    x, y = frame.local_x(np.array(bbox[::2])), frame.local_y(np.array(bbox[1::2]))
+    bounds = (float(x[0]), float(y[0]), float(x[1]), float(y[1]))
+    return Area(plan, shapely.box(*bounds), bounds)
+
+
+def footprint_of(plan: TilePlan, piece: Piece) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return x and y of the corners of the cells of a piece, and of what a border may reach to."""
+    top, left, bottom, right = plan.cells(piece)
+    if plan.points is not None:
+        in_rows, in_columns = plan.points.reach_in_cells
+        top, left, bottom, right = (
+            top - in_rows,
+            left - in_columns,
+            bottom + in_rows,
+            right + in_columns,
+        )
+    return plan.geometry.centres(
+        np.array([left, right, right, left], dtype=np.float64),
+        np.array([top, top, bottom, bottom], dtype=np.float64),
+    )

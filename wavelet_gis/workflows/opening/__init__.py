@@ -1,0 +1,1 @@
+"""What holds terrain, by kind: each opened by a function of its own."""
