@@ -1,6 +1,6 @@
 """Draw the pictures of docs/howto/qgis.md, with the QGIS of this Python and matplotlib's DEM.
 
-    QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis-pictures.py DEM.tif [--full FOLDER]
+    QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis/pictures.py DEM.tif [--full FOLDER]
 
 DEM.tif is matplotlib's DEM of Jacksboro in a projected CRS (`examples/demo.py` writes it in
 degrees; ``gdalwarp -t_srs EPSG:26916 -tr 80 80 -r cubic``). Every dialog with all parameters open,
@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 from unittest.mock import Mock
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
 
 import numpy as np  # noqa: E402
