@@ -138,8 +138,7 @@ def main() -> None:
     print(head + "\n" + "| --- " * (head.count("|") - 1) + "|")
     for n in () if arguments.real else (100, 500, *((1000,) if arguments.large else ())):
         for label, design in {**DESIGNS, "denoise": "denoise"}.items():
-            if n < 1000 or label in ("10 %", "tolerance", "GLMN"):
-                compare("synthetic", n, label, design)
+            compare("synthetic", n, label, design)
     if arguments.real:
         compare_real(arguments.data, arguments.design, arguments.results)
 

@@ -37,6 +37,7 @@ NO_SURFACE = (
     "too few to triangulate",
     "lie on one line",
     "no point is left",
+    "a surface needs at least three",
 )
 
 #: Slack of an error against the second opinion, in parts of the relief.

@@ -82,12 +82,22 @@ def test_several_clouds_come_back_into_a_folder(done, refused, tmp_path):
     assert "name a folder" in message
 
 
+def heed_interrupts():
+    """Undo in the child what a shell does to its background jobs, such as a run of these tests."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
 def test_an_interrupt_keeps_what_is_made(done, tmp_path):
     dem = write_tif(tmp_path / "dem.tif", hills(150, 150))
     arguments = ["tile", dem, tmp_path / "tiles", "--tile", 20, "--workers", 2]
     command = [sys.executable, "-m", "wavelet_gis.cli", *arguments]
-    with subprocess.Popen(list(map(str, command)), stderr=subprocess.PIPE, text=True) as program:
+    with subprocess.Popen(
+        list(map(str, command)),
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=heed_interrupts,
+    ) as program:
         records = tmp_path / "tiles" / "pieces"
         while not list(records.rglob("*.json")):
             assert program.poll() is None
