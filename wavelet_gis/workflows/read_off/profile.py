@@ -64,7 +64,10 @@ class Profile:
     heights: FloatArray
 
     def table(self) -> dict[str, NDArray[Any]]:
-        """Return the columns ``line`` (from 1), ``distance``, ``x``, ``y``, and ``z_00`` by level."""
+        """Return the columns ``line``, ``distance``, ``x``, ``y``, and ``z_00`` by level.
+
+        Lines count from 1, as in the plot.
+        """
         columns: dict[str, NDArray[Any]] = {
             "line": self.line + 1,
             "distance": self.distance,
