@@ -15,6 +15,7 @@ from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
+from wavelet_gis.model.terrain import Terrain, terrain_of_mesh
 from wavelet_gis.tiles.area import Box, area_of
 from wavelet_gis.tiles.index import TileIndex, open_index
 from wavelet_gis.tiles.piece import join
@@ -22,7 +23,7 @@ from wavelet_gis.tiles.plan import Piece
 from wavelet_gis.tiles.within import pieces_within
 from wavelet_gis.workflows.extract import Surface, SurfaceErrors
 
-__all__ = ["Region", "extract_region", "restored_raster"]
+__all__ = ["Region", "extract_region", "restored_raster", "terrain_of_region"]
 
 
 class Region(NamedTuple):
@@ -125,6 +126,28 @@ def extract_region(
         cells = cells[used]
     geo = replace(geos[0], origin=MeshOrigin(), errors=None, notes=())
     return Region(Surface(geo, mesh, cells, told, errors), tuple(pieces))
+
+
+def terrain_of_region(
+    index: str | os.PathLike[str] | TileIndex, *, level: int | None = None, **where: Any
+) -> Terrain:
+    """Return a region of a tile set as a terrain, to be made anything of that a TIN can be.
+
+    Parameters
+    ----------
+    index : path or TileIndex
+    level : int, optional
+        By default the finest, which is all of the input in memory.
+    **where
+        See `extract_region`.
+    """
+    found = index if isinstance(index, TileIndex) else open_index(index)
+    chosen = found.n_levels if level is None else level
+    mesh = extract_region(found, level=chosen, **where).surface.mesh
+    plan = found.plan
+    return terrain_of_mesh(
+        found.folder.name, mesh, plan.coordinate_system, plan.local_frame, plan.vertical_unit
+    )
 
 
 def _told_errors(parts: list[NDArray[np.float64]], z_scale: float) -> SurfaceErrors:

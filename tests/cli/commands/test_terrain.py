@@ -24,6 +24,23 @@ def test_tiles_of_a_dem_and_of_its_pyramid(done, tmp_path):
     assert "promised (m)" in said
 
 
+def test_a_tile_set_gives_the_tiles_of_its_input(done, refused, tmp_path):
+    dem = write_tif(tmp_path / "dem.tif", hills(60, 70))
+    index = tmp_path / "tiles" / "index.gpkg"
+    done("tile", dem, tmp_path / "tiles", "--tile", 32, "--levels", 3, "--workers", 1)
+    done("terrain", dem, tmp_path / "a", "--max-error", 1)
+    done("terrain", index, tmp_path / "b", "--max-error", 1)
+    tiles = [
+        {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*.terrain")}
+        for folder in (tmp_path / "a", tmp_path / "b")
+    ]
+    assert len(tiles[0]) > 5
+    assert tiles[0] == tiles[1]
+    done("terrain", index, tmp_path / "c", "--level", 3, "--max-error", 1)
+    message = refused("terrain", index, tmp_path / "d", "--crs", "EPSG:4326")
+    assert "--crs is for other input" in message
+
+
 def test_what_is_refused(refused, tmp_path):
     dem = write_tif(tmp_path / "dem.tif", hills(20, 20))
     write_las(tmp_path / "cloud.laz")

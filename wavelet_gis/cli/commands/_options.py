@@ -82,6 +82,8 @@ _READING = (
     "duplicates",
     "max_edge",
     "concave",
+    "bbox",
+    "resolution",
 )
 
 
@@ -174,6 +176,19 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "--concave",
         action="store_true",
         help="leave out only what such edges open to the outside, so that gaps inside stay closed",
+    )
+    group.add_argument(
+        "--bbox",
+        type=box,
+        metavar="X,Y,X,Y",
+        help="only points of a cloud in this box: smallest x and y, largest x and y; of a COPC "
+        "file no more is read",
+    )
+    group.add_argument(
+        "--resolution",
+        type=length,
+        metavar="D",
+        help="of a COPC file only the levels that have points so far apart",
     )
     group.add_argument("--layer", metavar="NAME", help="of a vector file of points or triangles")
     group.add_argument(

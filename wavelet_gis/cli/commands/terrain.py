@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from typing import Any
 
 from wavelet_gis.cli.commands._options import (
     add_input_arguments,
@@ -19,9 +20,11 @@ HELP = "Write a terrain, or a pyramid, as quantized-mesh tiles for globes such a
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_inputs_argument(parser, "a pyramid file; ")
+    add_inputs_argument(parser, "a pyramid file, or the index.gpkg of a tile set; ")
     parser.add_argument("output", help="a folder, with layer.json and the tiles of all zooms")
-    parser.add_argument("--level", type=int, metavar="K", help="of a pyramid, else its finest")
+    parser.add_argument(
+        "--level", type=int, metavar="K", help="of a pyramid or a tile set, else its finest"
+    )
     parser.add_argument(
         "--max-zoom",
         dest="zoom",
@@ -52,14 +55,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
+    from wavelet_gis.errors import InputFileError
     from wavelet_gis.io.atomic import check_folder
     from wavelet_gis.tiles.globe.tileset import LAYER, terrain_tiles
+    from wavelet_gis.tiles.index import is_index
+    from wavelet_gis.tiles.read import terrain_of_region
     from wavelet_gis.workflows.open import open_pyramid_or_input
+    from wavelet_gis.workflows.opening.input_options import PYRAMID, require_meaning
 
     check_folder(arguments.output, LAYER, overwrite=arguments.overwrite)
-    data = open_pyramid_or_input(
-        arguments.input, level=arguments.level, **reading_options(arguments)
-    )
+    if len(arguments.input) == 1 and is_index(arguments.input[0]):
+        given = reading_options(arguments)
+        require_meaning(arguments.input[0], PYRAMID, given)
+        for name in ("crs", "vertical_unit"):
+            if given[name]:
+                raise InputFileError(
+                    "{path}: a tile set knows its own, and {0} is for other input; leave it out.",
+                    name,
+                    path=arguments.input[0],
+                )
+        data: Any = terrain_of_region(arguments.input[0], level=arguments.level)
+    else:
+        data = open_pyramid_or_input(
+            arguments.input, level=arguments.level, **reading_options(arguments)
+        )
     with console.progress("tiling") as progress:
         tiles = terrain_tiles(
             data,

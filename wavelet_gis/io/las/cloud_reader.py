@@ -19,6 +19,7 @@ from wavelet_gis.crs.las import las_crs
 from wavelet_gis.errors import CrsWarning, InputFileError, PointCloudWarning
 from wavelet_gis.io.las import block as las_block
 from wavelet_gis.io.las import laz_decoder
+from wavelet_gis.io.las.copc import Chunk, chunks_within, is_copc
 from wavelet_gis.io.las.layout import (
     LARGEST_COORDINATE,
     LasLayout,
@@ -66,6 +67,8 @@ NOISE_CLASSES = (7, 18)
 #: No points are compressed to less than one part in this; thousands of equal ones come near it.
 _MOST_COMPRESSED = 100_000
 
+Box = tuple[float, float, float, float]
+
 #: Point formats with references to waveform packets.
 _WAVEFORM_FORMATS = (4, 5, 9, 10)
 
@@ -79,6 +82,8 @@ def read_cloud(
     carry: bool = True,
     keep_noise: bool = False,
     keep_withheld: bool = False,
+    bbox: tuple[float, float, float, float] | None = None,
+    resolution: float | None = None,
 ) -> tuple[PointCloud, Georeference]:
     """Return the chosen points of a LAS or LAZ file, and what it tells of their coordinates.
 
@@ -102,6 +107,12 @@ def read_cloud(
         they are only carried, to be given back; a class named in `classes` is always kept.
     keep_withheld : bool
         The same for points with the withheld flag.
+    bbox : tuple of float, optional
+        Only points in a box: smallest x and y, largest x and y, in the file's coordinates. Of a
+        COPC file no more is read.
+    resolution : float, optional
+        Of a COPC file: only so many of its levels as have points so far apart, in the unit of x
+        and y.
 
     Raises
     ------
@@ -122,9 +133,10 @@ def read_cloud(
         raise InputFileError(f"{name}: this is a folder; name the LAS or LAZ file in it.")
     if not os.path.exists(name):
         raise InputFileError(f"{name}: there is no such file; check the path.")
-    layout, header, points, tail, tail_at = _read_all(name)
+    layout, header, points, tail, tail_at = _read_all(name, bbox, resolution)
     array = points.array
-    if len(array) < layout.n_points:
+    is_part = bbox is not None or resolution is not None
+    if len(array) < layout.n_points and not is_part:
         _tell(
             "points_missing",
             "{name}: the header announces {n_announced} points, the file ends after {n_points}; "
@@ -154,8 +166,10 @@ def read_cloud(
         classes=None if classes is None else tuple(int(c) for c in classes),
         aside=aside,
         evlrs_at=tail_at,
+        is_altered=is_part,
     )
-    _check_extent(name, layout, points)
+    if not is_part:
+        _check_extent(name, layout, points)
     _tell_of_waveforms(name, layout)
     place = las_crs(projection_records(layout, tail, tail_at))
     for note in place.notes:
@@ -179,7 +193,9 @@ def _tell(code: str, template: str, *options: str, **figures: Any) -> None:
     warn(PointCloudWarning, code, template, *options, stacklevel=3, **figures)
 
 
-def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes, int | None]:
+def _read_all(
+    name: str, bbox: Box | None = None, resolution: float | None = None
+) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes, int | None]:
     """Return the layout, laspy's view of it, the points, and what follows them."""
     require_laspy()
     with open(name, "rb") as stream:
@@ -187,13 +203,24 @@ def _read_all(name: str) -> tuple[LasLayout, LasHeader, PackedPointRecord, bytes
         if layout.n_points == 0:
             raise InputFileError(f"{name}: the file holds no points; get it again.")
         header = laspy_header(name, layout)
+        chunks: tuple[Chunk, ...] | None = None
+        if (bbox is not None or resolution is not None) and is_copc(layout):
+            chunks = tuple(chunks_within(name, layout, stream, bbox, resolution))
+        elif resolution is not None:
+            raise InputFileError(
+                "{name}: this is no COPC file, and {0} is for its levels; leave it out.",
+                "resolution",
+                name=name,
+            )
         try:
-            points = _points(name, layout, header, stream)
+            points = _points(name, layout, header, stream, chunks)
         except MemoryError as error:
             raise InputFileError(
                 f"{name}: the header announces more points than memory can hold; if that is no "
                 "mistake, cut the file into tiles."
             ) from error
+        if bbox is not None:
+            points = _inside(name, layout, points, bbox)
         for note in layout.notes:
             _tell("las_header", "{name}: {fact}", name=name, fact=note)
         tail, tail_at = tail_of(name, layout, stream)
@@ -234,14 +261,46 @@ def laspy_header(name: str, layout: LasLayout) -> LasHeader:
     return header
 
 
-def _points(name: str, layout: LasLayout, header: LasHeader, stream: BinaryIO) -> PackedPointRecord:
+def _inside(
+    name: str, layout: LasLayout, points: PackedPointRecord, bbox: Box
+) -> PackedPointRecord:
+    """Return the points in a box."""
+    x, y = (
+        points.array[axis] * layout.scales[k] + layout.offsets[k] for k, axis in enumerate("XY")
+    )
+    inside = (x >= bbox[0]) & (x <= bbox[2]) & (y >= bbox[1]) & (y <= bbox[3])
+    if not inside.any():
+        raise InputFileError(
+            "{name}: there are no points in the box; x runs from {x_low:g} to {x_high:g}, y from "
+            "{y_low:g} to {y_high:g}, give another {0}.",
+            "bbox",
+            name=name,
+            x_low=layout.low[0],
+            x_high=layout.high[0],
+            y_low=layout.low[1],
+            y_high=layout.high[1],
+        )
+    return require_laspy().PackedPointRecord(points.array[inside], points.point_format)
+
+
+def _points(
+    name: str,
+    layout: LasLayout,
+    header: LasHeader,
+    stream: BinaryIO,
+    chunks: tuple[Chunk, ...] | None = None,
+) -> PackedPointRecord:
     laspy, dtype = require_laspy(), header.point_format.dtype()
     if not layout.is_compressed:
         stream.seek(layout.points_start)
         array = np.fromfile(stream, dtype, layout.n_points)
         return laspy.PackedPointRecord(array, header.point_format)
     job = laz_job(name, layout)
-    array = np.empty(layout.n_points, dtype)
+    if chunks is not None:
+        job = job._replace(chunks=chunks, n_points=sum(chunk.n_points for chunk in chunks))
+    array = np.empty(job.n_points, dtype)
+    if len(array) == 0:  # a box beside all of it
+        return laspy.PackedPointRecord(array, header.point_format)
     with decoding(name):
         laz_decoder.decoded(job, array.view(np.uint8))
     return laspy.PackedPointRecord(array, header.point_format)

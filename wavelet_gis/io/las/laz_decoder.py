@@ -63,6 +63,8 @@ class Job(NamedTuple):
         The record on the compression.
     record_length, n_points : int
         Of the points.
+    chunks : tuple of (start, n_bytes, n_points)
+        Of a COPC file, the chunks that are wanted; by default all points are.
     """
 
     path: str
@@ -70,6 +72,7 @@ class Job(NamedTuple):
     record: bytes
     record_length: int
     n_points: int
+    chunks: tuple[tuple[int, int, int], ...] = ()
 
 
 def decoded(job: Job, out: Any) -> None:
@@ -161,6 +164,9 @@ def decode(job: Job, put: Callable[[Any], object]) -> None:
     """
     import lazrs
 
+    if job.chunks:
+        _decode_chunks(job, put, lazrs)
+        return
     with open(job.path, "rb") as stream:
         check_chunks(job, stream, lazrs)
         stream.seek(job.start)
@@ -181,6 +187,28 @@ def decode(job: Job, put: Callable[[Any], object]) -> None:
             if isinstance(error, (KeyboardInterrupt, BrokenPipeError)):
                 raise
             raise DecodeError(_words(error)) from None
+
+
+def _decode_chunks(job: Job, put: Callable[[Any], object], lazrs: Any) -> None:
+    """Decode the chunks that are wanted, each by itself."""
+    with open(job.path, "rb") as stream:
+        for start, n_bytes, n_points in job.chunks:
+            if n_points * job.record_length > MEMORY // 4:
+                raise DecodeError(f"a chunk is said to hold {n_points} points")
+            if job.record[0] == LAYERED:
+                _check_chunk(job, stream, start, n_bytes)
+            stream.seek(start)
+            content = _exactly(stream, n_bytes)
+            piece = bytearray(n_points * job.record_length)
+            try:
+                lazrs.decompress_points_with_chunk_table(
+                    content, job.record, piece, [(n_points, n_bytes)]
+                )
+            except BaseException as error:  # a Rust panic is no Exception
+                if isinstance(error, KeyboardInterrupt):
+                    raise
+                raise DecodeError(_words(error)) from None
+            put(piece)
 
 
 def check_chunks(job: Job, stream: BinaryIO, lazrs: Any) -> None:
@@ -233,23 +261,28 @@ def _table_offset(job: Job, stream: BinaryIO, size: int) -> int:
 
 def _check_layers(job: Job, stream: BinaryIO, chunks: list[tuple[int, int]]) -> None:
     """Hold the sizes of each chunk's layers against the chunk's own, and the points they hold."""
-    n_layers = _n_layers(job.record)
     start, n_there = job.start + 8, 0
     for _, length in chunks:
         if length:
-            head = job.record_length + 4 + 4 * n_layers
-            if length < head:
-                raise DecodeError("one of its chunks is shorter than its own head")
-            stream.seek(start + job.record_length)
-            n_here, *sizes = struct.unpack(f"<{n_layers + 1}I", _exactly(stream, 4 * n_layers + 4))
-            n_there += n_here
-            if head + sum(sizes) > length:
-                raise DecodeError("the layers of one of its chunks are longer than the chunk")
+            n_there += _check_chunk(job, stream, start, length)
         start += length
     if n_there != job.n_points:
         raise DecodeError(
             f"the header announces {job.n_points} points, the compressed chunks hold {n_there}"
         )
+
+
+def _check_chunk(job: Job, stream: BinaryIO, start: int, length: int) -> int:
+    """Hold the sizes of a chunk's layers against its own; return how many points it says it has."""
+    n_layers = _n_layers(job.record)
+    head = job.record_length + 4 + 4 * n_layers
+    if length < head:
+        raise DecodeError("one of its chunks is shorter than its own head")
+    stream.seek(start + job.record_length)
+    n_here, *sizes = struct.unpack(f"<{n_layers + 1}I", _exactly(stream, 4 * n_layers + 4))
+    if head + sum(sizes) > length:
+        raise DecodeError("the layers of one of its chunks are longer than the chunk")
+    return int(n_here)
 
 
 def _n_layers(record: bytes) -> int:
@@ -289,9 +322,10 @@ def _in_a_child(python: str, job: Job, views: Iterable[memoryview]) -> None:
         job.record.hex(),
         os.path.abspath(job.path),
     ]
+    wanted = b"".join(struct.pack("<3Q", *chunk) for chunk in job.chunks)
     with subprocess.Popen(
         command,
-        stdin=subprocess.DEVNULL,
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         env={**os.environ, "RUST_BACKTRACE": "0", "RAYON_NUM_THREADS": str(_n_threads())},
@@ -304,6 +338,9 @@ def _in_a_child(python: str, job: Job, views: Iterable[memoryview]) -> None:
         clock = threading.Timer(BUSY * _seconds(job), child.kill)
         listener.start()
         clock.start()
+        assert child.stdin is not None
+        with suppress(OSError), child.stdin:  # a child that is gone says why
+            child.stdin.write(wanted)
         try:
             is_whole = False
             for view in views:
@@ -390,7 +427,8 @@ def _limit(n_bytes: int, seconds: float) -> None:
 def _main(arguments: list[str]) -> int:
     """Decode to standard output: the child's side of `decoded`."""
     home, start, record_length, n_points, record, path = arguments
-    job = Job(path, int(start), bytes.fromhex(record), int(record_length), int(n_points))
+    chunks = tuple(struct.iter_unpack("<3Q", sys.stdin.buffer.read()))
+    job = Job(path, int(start), bytes.fromhex(record), int(record_length), int(n_points), chunks)
     _limit(MEMORY_THREADED if job.n_points >= THREADED else MEMORY, _seconds(job))
     if home:
         sys.path.insert(0, home)

@@ -44,6 +44,8 @@ _MEANT_FOR = {
     "duplicates": (CLOUD,),
     "max_edge": (CLOUD,),
     "concave": (CLOUD,),
+    "bbox": (CLOUD,),
+    "resolution": (CLOUD,),
     "layer": (POINTS, TRIANGLES),
     "z_field": (POINTS,),
     "breaklines": _NO_TIN,

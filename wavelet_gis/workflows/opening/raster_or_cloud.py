@@ -41,6 +41,8 @@ def open_terrain(
     duplicates: str | None = None,
     max_edge: float | Literal["auto"] | None = None,
     concave: bool = False,
+    bbox: tuple[float, float, float, float] | None = None,
+    resolution: float | None = None,
 ) -> Terrain:
     """Return the terrain in a raster or a LAS file, or in several that are parts of one.
 
@@ -50,7 +52,7 @@ def open_terrain(
         ``.las`` and ``.laz`` are read with laspy, all else with GDAL; see `open_data` for several.
     band : int, optional
         Of a raster, from 1.
-    attributes, classes, carry, keep_noise, keep_withheld
+    attributes, classes, carry, keep_noise, keep_withheld, bbox, resolution
         Of a point cloud; see `wavelet_gis.io.las.read_cloud`.
     class_channels : bool
         Lift classes, return numbers and other categories as one channel of 0 and 1 each.
@@ -84,6 +86,8 @@ def open_terrain(
         "carry": carry,
         "keep_noise": keep_noise,
         "keep_withheld": keep_withheld,
+        "bbox": bbox,
+        "resolution": resolution,
     }
     of_surface = {"duplicates": duplicates, "max_edge": max_edge, "concave": concave}
     name = readable(joint_name(files))
