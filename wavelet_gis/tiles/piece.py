@@ -26,7 +26,7 @@ from wavelet_core import analyse as core_analyse
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_bytes, write_text
-from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh
+from wavelet_gis.model.dem import Dem, dem_mesh
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.raster_origin import RasterOrigin
@@ -358,9 +358,7 @@ def _in_place(plan: TilePlan, part: Dem, top: int, left: int, bottom: int, right
     from dataclasses import replace
 
     shape = (bottom - top + 1, right - left + 1)
-    a, b, c, d, e, f = plan.transform
-    transform = (a, b, c + a * left + b * top, d, e, f + d * left + e * top)
-    geometry = GridGeometry(shape, transform)
+    geometry = plan.geometry.window(top, left, shape)
     if part.values.shape == shape:
         return replace(part, geometry=geometry)
     x, y = part.geometry.centres(np.zeros(1), np.zeros(1))

@@ -106,16 +106,8 @@ def plan_of_clouds(
             )
     heads = [read_head(path) for path in paths]
     _require_alike(paths, heads)
-    place = agreed(
-        paths,
-        [
-            head.place._replace(
-                wkt=None if crs else head.place.wkt,
-                vertical_unit=None if vertical_unit else head.place.vertical_unit,
-            )
-            for head in heads
-        ],
-    )
+    places = [head.place for head in heads]
+    place = agreed(paths, places, any_crs=bool(crs), any_unit=bool(vertical_unit))
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
     name = joint_name(paths)
     scales, offsets = heads[0].layout.scales, heads[0].layout.offsets
