@@ -8,6 +8,7 @@ import os
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -289,8 +290,8 @@ class TilePlan:
                 files=tuple(SourceFile(str(f[0]), *map(int, f[1:])) for f in raw["files"]),
                 shape=(n_rows, n_columns),
                 transform=tuple(stored.numbers("transform", 6)),
-                rows=tuple(int(row) for row in raw["rows"]),
-                columns=tuple(int(column) for column in raw["columns"]),
+                rows=_ends(stored, "rows", n_rows),
+                columns=_ends(stored, "columns", n_columns),
                 levels=stored.integer("levels", 1, 64),
                 reading=dict(stored.fields("reading")),
                 wavelets=dict(stored.fields("wavelets")),
@@ -444,12 +445,28 @@ def _tiles_along(ends: tuple[int, ...], first: int, length: int, reach: int) -> 
     return range(low, high)
 
 
+def _ends(stored: Fields, name: str, n_cells: int) -> tuple[int, ...]:
+    """Return where tiles end, as a file has it: from the first cell to the last, ascending."""
+    ends = stored.integers(name, 0, n_cells - 1)
+    is_ascending = all(a < b for a, b in pairwise(ends)) or ends == [0, 0]
+    if len(ends) < 2 or (ends[0], ends[-1]) != (0, n_cells - 1) or not is_ascending:
+        raise stored.fault(f"{name} do not ascend from 0 to {n_cells - 1}")
+    return tuple(ends)
+
+
+def _pair(stored: Fields, name: str, low: int) -> tuple[int, int]:
+    pair = stored.integers(name, low)
+    if len(pair) != 2:
+        raise stored.fault(f"{name} has {len(pair)} numbers where 2 are due")
+    return pair[0], pair[1]
+
+
 def _lattice(stored: Fields) -> PointLattice:
     return PointLattice(
         scales=tuple(stored.numbers("scales", 3)),  # type: ignore[arg-type]
         offsets=tuple(stored.numbers("offsets", 3)),  # type: ignore[arg-type]
-        first=tuple(stored.integers("first", -(2**32))),  # type: ignore[arg-type]
-        ratio=tuple(stored.integers("ratio", 1)),  # type: ignore[arg-type]
+        first=_pair(stored, "first", -(2**32)),
+        ratio=_pair(stored, "ratio", 1),
         spacing=stored.integer("spacing", 1),
         reach=stored.integer("reach", 1),
         n_points=stored.integer("n_points", 1),
