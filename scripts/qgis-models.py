@@ -339,13 +339,12 @@ def lidar_to_contours():
         "No ground point is farther above or below the TIN, in the unit of elevation.",
     )
     model.input(
-        optional_number("INTERVAL", "Interval of the contours", DOUBLE, 1.0, 0.001),
-        "In the unit of elevation.",
+        optional_number("INTERVAL", "Interval of the contours", DOUBLE, None, 0.001),
+        "In the unit of elevation; empty for a round one that gives about twenty.",
     )
     model.input(
         optional_number("CELL_SIZE", "Cell size", DOUBLE),
-        "Of the raster that the contours are drawn on, in the unit of the CRS; empty for the "
-        "spacing of the points.",
+        "Of the ground DEM, in the unit of the CRS; empty for the spacing of the points.",
     )
     model.step(
         "simplify",
@@ -362,13 +361,16 @@ def lidar_to_contours():
     )
     model.step(
         "contours",
-        "gdal:contour",
+        "terrainwavelets:contours",
         "Draw contours",
-        INPUT=result("simplify", "RASTER"),
-        BAND=1,
-        INTERVAL=given_or("INTERVAL", 1.0),
-        FIELD_NAME="ELEV",
-        outputs={"OUTPUT": ("Contours!", "Lines with their elevation in the field ELEV.")},
+        INPUT=result("simplify", "OUTPUT"),
+        INTERVAL=input_("INTERVAL"),
+        outputs={
+            "OUTPUT": (
+                "Contours!",
+                "Of the coarsest level whose RMSE is at most a fifth of the interval.",
+            )
+        },
     )
     model.write("point_cloud_to_contours.model3")
 
@@ -451,6 +453,7 @@ def dems_to_change_by_scale():
         "Leave out small change",
         INPUT=result("analyse", "OUTPUT"),
         SMALLEST_SIZE=given_or("SMALLEST_SIZE", 20.0),
+        LOOK="difference",
         outputs={"DEM": ("Change!", "Difference without what is smaller.")},
     )
     model.step(

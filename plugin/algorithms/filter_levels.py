@@ -15,6 +15,7 @@ from qgis.core import (
 )
 
 from ..base import Values
+from ..parameters.choices import choice
 from ..parameters.pyramid import add_map_parameter, crs_of, save
 from ..parameters.request import Request
 from ..parameters.restored_output import (
@@ -85,6 +86,14 @@ class FilterLevels(PyramidAlgorithm):
             tr("A pyramid file like the input, with the changed details."),
         )
         add_map_parameter(self)
+        self.add(
+            choice("LOOK", tr("The DEM opens as"), ("hillshade", "difference")),
+            tr(
+                "<i>difference</i> for a pyramid that was made from a difference of DEMs: red is "
+                "above zero, blue below."
+            ),
+            advanced=True,
+        )
         add_restored_outputs(
             self,
             tr("Filtered DEM"),

@@ -1120,6 +1120,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>&lt;i&gt;difference&lt;/i&gt; for a pyramid that was made from a difference of DEMs: red is above zero, blue below.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>A difference of DEMs needs a pyramid that was made from a DEM.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1336,6 +1341,11 @@
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Such as that of a laser scanner. Done too where nothing else is chosen below.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>The DEM opens as</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -1120,6 +1120,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>&lt;i&gt;difference&lt;/i&gt; for a pyramid that was made from a difference of DEMs: red is above zero, blue below.</source>
+    <translation>&lt;i&gt;difference&lt;/i&gt; für eine Pyramide, die aus einer Differenz von DGM entstand: Rot ist über null, Blau darunter.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>A difference of DEMs needs a pyramid that was made from a DEM.</source>
     <translation>Eine Differenz von DGM braucht eine Pyramide, die aus einem DGM gemacht ist.</translation>
   </message>
@@ -1337,6 +1342,11 @@
     <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Such as that of a laser scanner. Done too where nothing else is chosen below.</source>
     <translation>Etwa das eines Laserscanners. Geschieht auch, wo unten nichts anderes gewählt ist.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>The DEM opens as</source>
+    <translation>Das DGM öffnet sich als</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>

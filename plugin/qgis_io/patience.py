@@ -27,6 +27,9 @@ Result = TypeVar("Result")
 LOOK, SILENCE = 0.1, 0.4
 #: Share of what is left of its part by which the bar creeps.
 CREEP = 0.01
+#: Share of what is left at the last word of the work by which the bar may be ahead of it: further
+#: ahead, nothing would be seen of what it tells next.
+LEAD = 0.25
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
 TOLD = 0.9
 
@@ -92,7 +95,8 @@ def computed(
         if told > shown:
             shown, news = told, now
         elif now - news > SILENCE:
-            shown, news = shown + CREEP * (1.0 - shown), now
+            goal = told + (LEAD if told else 1.0) * (1.0 - told)
+            shown, news = shown + CREEP * max(goal - shown, 0.0), now
         feedback.setProgress(100.0 * (start + (stop - start) * shown))
         work.pass_on()
         try:

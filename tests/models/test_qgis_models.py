@@ -190,10 +190,10 @@ def test_point_cloud_to_contours(run_model, tmp_path):
     )
     assert layers["Ground TIN"].featureCount() < 50  # a plane needs few triangles
     (contours,) = [layer for name, layer in layers.items() if name.lower() == "contours"]
-    assert {f["ELEV"] for f in contours.getFeatures()} == {105.0, 110.0, 115.0}
+    assert {f["elevation"] for f in contours.getFeatures()} == {105.0, 110.0, 115.0}
     for feature in contours.getFeatures():
         x = np.array([vertex.x() for vertex in feature.geometry().vertices()])
-        assert np.abs(x - 700000 - 20 * (feature["ELEV"] - 100)).max() < 4
+        assert np.abs(x - 700000 - 20 * (feature["elevation"] - 100)).max() < 4
 
 
 def test_dem_to_simplified_cog(run_model, dem, tmp_path):

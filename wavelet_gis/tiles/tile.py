@@ -16,6 +16,7 @@ from wavelet_gis.io.read_back import write_text
 from wavelet_gis.io.scratch import sweep_own
 from wavelet_gis.notes import warn
 from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, stamp_of
+from wavelet_gis.tiles.cloud.plan import LEVELS_OF_POINTS, plan_of_clouds
 from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
 from wavelet_gis.tiles.piece import LOOSE, PIECES, make_piece, read_record, sha256_of
 from wavelet_gis.tiles.plan import LEVELS, PLAN, TILE, Piece, TilePlan, plan_of_rasters
@@ -132,7 +133,7 @@ def tile_clouds(
     folder: str | os.PathLike[str],
     *,
     tile: float | tuple[float, float] | None = None,
-    levels: int = LEVELS,
+    levels: int = LEVELS_OF_POINTS,
     workers: int = 1,
     scheduler: str | None = None,
     overwrite: bool = False,
@@ -167,8 +168,6 @@ def tile_clouds(
     TerrainWarning
         Of tiles that could not be made: they are set aside, and the others go on without them.
     """
-    from wavelet_gis.tiles.cloud.plan import plan_of_clouds
-
     _require_workers(workers, scheduler)
     plan = plan_of_clouds(data, tile=tile, levels=levels, **options)
     return run_plan(plan, folder, workers, scheduler, overwrite=overwrite, on_piece=on_piece)

@@ -503,3 +503,24 @@ def test_a_polygon_is_what_reaches_into_it(tiled, tmp_path):
     far = frame.set_geometry(frame.geometry.translate(1, 1))
     with pytest.raises(InputFileError, match="give another polygon"):
         wg.extract_region(tiled.index, polygon=far)
+
+
+def test_a_dask_cluster_gives_the_bytes_of_one_process(parts, tiled, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        wg.tile_clouds(parts, tmp_path / "t", scheduler=address, **OPTIONS)
+    assert checksums(tmp_path / "t") == checksums(tiled.index.folder)
+
+
+def test_groups_are_no_larger_than_tiles(tmp_path):
+    path = write_las(tmp_path / "a.las", 25000)
+    tiled = wg.tile_clouds(path, tmp_path / "t", tile=50)
+    largest = [
+        max(tiled.index.records[piece]["sizes"][-1] for piece in tiled.index.whole(stage))
+        for stage in range(tiled.index.plan.n_stages)
+    ]
+    assert len(largest) == 2
+    assert largest[1] <= 1.1 * largest[0]

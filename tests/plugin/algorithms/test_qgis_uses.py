@@ -239,6 +239,12 @@ class TestEveryOutputOpensStyled:
         (middle,) = (item for item in items if item.value == 0)
         assert middle.color.getRgb()[:3] == (247, 247, 247)
 
+    @pytest.mark.parametrize("options", [{"LOOK": "difference"}, {"DROP_COARSE": True}])
+    def test_what_is_about_zero_is_not_shaded(self, opened, pyramid, options):
+        parameters = {"INPUT": pyramid, "LAST_LEVEL": 3, "DEM": "TEMPORARY_OUTPUT", **options}
+        layer = opened("filterlevels", parameters)["Filtered DEM"]
+        assert layer.renderer().type() == "singlebandpseudocolor"
+
     def test_vertices_of_a_level_and_a_temporary_mesh(self, opened, pyramid):
         parameters = {
             "INPUT": pyramid,

@@ -47,9 +47,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--levels",
         type=int,
-        default=8,
         metavar="N",
-        help="of each tile, and of each group of four but the last (8)",
+        help="of each tile, and of each group of four but the last (8; of point clouds 14)",
     )
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
@@ -82,6 +81,8 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     given = {name: getattr(arguments, name) for name in (*_OF_RASTERS, *_OF_CLOUDS)}
     require_meaning(joint_name(files), CLOUD if is_cloud else RASTER, given)
     options = {name: given[name] for name in (_OF_CLOUDS if is_cloud else _OF_RASTERS)}
+    if arguments.levels is not None:
+        options["levels"] = arguments.levels
     if arguments.tile is not None:
         options["tile"] = arguments.tile if is_cloud else _cells(arguments.tile)
     began = perf_counter()
@@ -93,7 +94,6 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         tiled = (tile_clouds if is_cloud else tile_rasters)(
             files,
             arguments.output,
-            levels=arguments.levels,
             workers=arguments.workers,
             scheduler=arguments.scheduler,
             overwrite=arguments.overwrite,

@@ -22,7 +22,6 @@ from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import frame_of_bounds, require_plan
 from wavelet_gis.tiles.cloud.borders import FAR
 from wavelet_gis.tiles.plan import (
-    LEVELS,
     PointLattice,
     SourceFile,
     TilePlan,
@@ -30,7 +29,11 @@ from wavelet_gis.tiles.plan import (
     ends_of_tiles,
 )
 
-__all__ = ["POINTS_IN_TILE", "plan_of_clouds", "shift_of"]
+__all__ = ["LEVELS_OF_POINTS", "POINTS_IN_TILE", "plan_of_clouds", "shift_of"]
+
+#: Levels of a tile of points and of each group but the last: a level takes some 11 % of them, so a
+#: group of four begins with no more than a tile does, at any stage.
+LEVELS_OF_POINTS = 14
 
 #: Points of a tile where no size is given.
 POINTS_IN_TILE = 1_000_000
@@ -51,7 +54,7 @@ def plan_of_clouds(
     data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     *,
     tile: float | tuple[float, float] | None = None,
-    levels: int = LEVELS,
+    levels: int = LEVELS_OF_POINTS,
     crs: str | None = None,
     vertical_unit: str | None = None,
     attributes: Sequence[str] = (),
