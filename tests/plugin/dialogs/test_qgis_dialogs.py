@@ -21,10 +21,22 @@ ALGORITHMS = (
     "clusterdetails",
     "filterlevels",
     "qualityreport",
+    "simplifypointcloud",
+    "thinpointcloud",
+    "webterrain",
+    "contours",
+    "profile",
+    "shapeoflevel",
+    "difference",
+    "meshquality",
     "dem_to_coarse_tin",
     "dem_to_hydraulic_mesh",
     "point_cloud_to_dem",
     "dem_to_denoised_dem",
+    "point_cloud_to_contours",
+    "dem_to_simplified_cog",
+    "dems_to_change_by_scale",
+    "dem_to_landform_clusters",
 )
 KEPT = os.environ.get("TERRAIN_WAVELETS_PICTURES")
 
