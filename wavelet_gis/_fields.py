@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from wavelet_core.errors import PyramidError, WaveletError
 
-__all__ = ["LARGEST_INTEGER", "Fields", "parse_json"]
+__all__ = ["LARGEST_INTEGER", "Fields", "holds_fields", "parse_json"]
 
 LARGEST_INTEGER = 2**63 - 1
 
@@ -215,6 +216,22 @@ an integer from 1 to 30 is due); analyse the input anew.
 
     def _wrong(self, name: str, value: object, due: str) -> WaveletError:
         return self.fault(f"{name} is {_short(value)} where {due} is due")
+
+
+def holds_fields(record: Any, fields: Mapping[str, Mapping[str, type]]) -> bool:
+    """Return whether a record of unknown origin has a known status, and the fields of that.
+
+    Parameters
+    ----------
+    record : object
+        What should be a dict with ``status``.
+    fields : mapping of str to mapping of str to type
+        For each status the fields that go with it.
+    """
+    status = record.get("status") if isinstance(record, dict) else None
+    if not isinstance(status, str) or status not in fields:
+        return False
+    return all(isinstance(record.get(name), kind) for name, kind in fields[status].items())
 
 
 def _members(value: object) -> list[Any]:

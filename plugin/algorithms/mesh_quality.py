@@ -93,10 +93,11 @@ class MeshQuality(PyramidAlgorithm):
             return mesh_quality(geo, levels=levels, progress=work.progress)
 
         rows = request.computed(compute, 0.05, 0.95)
+        meshed = [row for row in rows if row.n_triangles] or rows  # all others are NaN
         request.figures = {
-            "SMALLEST_ANGLE": min(row.smallest_angle for row in rows),
-            "LARGEST_ANGLE": max(row.largest_angle for row in rows),
-            "SHORTEST_EDGE": min(row.shortest_edge for row in rows),
+            "SMALLEST_ANGLE": min(row.smallest_angle for row in meshed),
+            "LARGEST_ANGLE": max(row.largest_angle for row in meshed),
+            "SHORTEST_EDGE": min(row.shortest_edge for row in meshed),
         }
         fields = QgsFields()
         for name in LevelQuality._fields:

@@ -158,17 +158,20 @@ class Profile(PyramidAlgorithm):
 
         found = request.computed(compute, 0.05, 0.8)
         figures = found.figures()
+        differences = [
+            row["max_difference"] for row in figures["profiles"]
+        ]  # NaN beside the terrain
         lengths = {row["line"]: row["length"] for row in figures["profiles"]}
         request.figures = {
             "N_LINES": len(lines),
             "N_POINTS": figures["n_points"],
             "LENGTH": sum(lengths.values()),
-            "MAX_DIFFERENCE": max(row["max_difference"] for row in figures["profiles"]),
+            "MAX_DIFFERENCE": max((d for d in differences if d == d), default=0.0),
         }
         request.say(tr("line   level  RMS off the finest  largest"))
         for row in figures["profiles"]:
             request.say(
-                f"{row['line'] + 1:4d} {row['level']:7d} {row['rms_difference']:19.4f} "
+                f"{row['line']:4d} {row['level']:7d} {row['rms_difference']:19.4f} "
                 f"{row['max_difference']:8.4f}"
             )
         results: Values = {}

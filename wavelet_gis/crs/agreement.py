@@ -11,7 +11,13 @@ from wavelet_gis.errors import InputFileError
 __all__ = ["agreed"]
 
 
-def agreed(names: Sequence[str], places: Sequence[Georeference]) -> Georeference:
+def agreed(
+    names: Sequence[str],
+    places: Sequence[Georeference],
+    *,
+    any_crs: bool = False,
+    any_unit: bool = False,
+) -> Georeference:
     """Return what several files tell of their coordinates, which must be the same.
 
     Parameters
@@ -20,12 +26,22 @@ def agreed(names: Sequence[str], places: Sequence[Georeference]) -> Georeference
         Of the files, for messages.
     places : sequence of Georeference
         What each tells.
+    any_crs, any_unit : bool
+        Whether the CRS, or the unit of z, is given otherwise: theirs need not be the same, and
+        what is returned has none.
 
     Raises
     ------
     InputFileError
         Two that contradict each other, in the CRS or the unit of z.
     """
+    places = [
+        place._replace(
+            wkt=None if any_crs else place.wkt,
+            vertical_unit=None if any_unit else place.vertical_unit,
+        )
+        for place in places
+    ]
     first = places[0]
     for name, place in zip(names[1:], places[1:], strict=True):
         if not _is_same(first.wkt, place.wkt):

@@ -71,6 +71,20 @@ class GridGeometry:
             return "has cells too small or too far away to be told apart"
         return ""
 
+    def window(self, row: int, column: int, shape: tuple[int, int]) -> GridGeometry:
+        """Return the grid of so many rows and columns that begins at one of the cells.
+
+        Parameters
+        ----------
+        row, column : int
+            Of its first cell, which may lie outside.
+        shape : (n_rows, n_columns)
+            Its size.
+        """
+        a, b, c, d, e, f = self.transform
+        x, y = c + a * column + b * row, f + d * column + e * row
+        return GridGeometry(shape, (a, b, x, d, e, y))
+
     def centres(
         self, columns: NDArray[Any], rows: NDArray[Any]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -190,12 +190,16 @@ def _table(profile: Profile) -> str:
     )
     keys = ("lowest", "highest", "rms_difference", "max_difference")
     body = "".join(
-        f"<tr><td>{row['line'] + 1}</td><td>{row['level']}</td>"
-        + "".join(f"<td>{row[key]:.4g}</td>" for key in keys)
+        f"<tr><td>{row['line']}</td><td>{row['level']}</td>"
+        + "".join(f"<td>{_shown(row[key])}</td>" for key in keys)
         + "</tr>"
         for row in rows
     )
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>\n"
+
+
+def _shown(value: float) -> str:
+    return f"{value:.4g}" if np.isfinite(value) else "-"
 
 
 def _colour(profile: Profile, k: int) -> str:

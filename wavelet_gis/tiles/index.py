@@ -15,7 +15,7 @@ from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.geopackage import check_database, check_rows
 from wavelet_gis.io.read_back import read_back, room_at
-from wavelet_gis.model.dem import GridGeometry, grid_bounds
+from wavelet_gis.model.dem import grid_bounds
 from wavelet_gis.tiles.piece import PIECES, read_record
 from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
 
@@ -167,9 +167,5 @@ def _footprint(plan: TilePlan, piece: Piece) -> bytes:
     import shapely
 
     top, left, bottom, right = plan.cells(piece)
-    a, b, c, d, e, f = plan.transform
-    geometry = GridGeometry(
-        (bottom - top + 1, right - left + 1),
-        (a, b, c + a * left + b * top, d, e, f + d * left + e * top),
-    )
+    geometry = plan.geometry.window(top, left, (bottom - top + 1, right - left + 1))
     return bytes(shapely.to_wkb(shapely.box(*grid_bounds(geometry))))

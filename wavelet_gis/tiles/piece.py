@@ -23,10 +23,11 @@ from numpy.typing import NDArray
 
 from wavelet_core import PyramidError, TriangleMesh, WaveletError
 from wavelet_core import analyse as core_analyse
+from wavelet_gis._fields import holds_fields
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_bytes, write_text
-from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh
+from wavelet_gis.model.dem import Dem, dem_mesh
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.raster_origin import RasterOrigin
@@ -57,6 +58,14 @@ LOOSE = ".points"
 _EPOCH = "SOURCE_DATE_EPOCH"
 
 _BYTES_AT_ONCE = 1 << 22
+
+#: What a record has, by its status; one that lacks it is damaged, and counts as none.
+_FIELDS: dict[str, dict[str, type]] = {
+    "whole": {"sha256": str, "n_bytes": int, "n_levels": int},
+    "loose": {"sha256": str, "n_bytes": int},
+    "empty": {},
+    "failed": {"stage": int, "row": int, "column": int, "reason": str},
+}
 
 
 class Joined(NamedTuple):
@@ -156,7 +165,7 @@ def read_record(folder: str | os.PathLike[str], piece: Piece) -> dict[str, Any] 
         record = json.loads(path.read_text("utf-8"))
     except (OSError, ValueError):
         return None
-    return record if isinstance(record, dict) and "status" in record else None
+    return record if holds_fields(record, _FIELDS) else None
 
 
 def sha256_of(path: str | os.PathLike[str]) -> str:
@@ -358,9 +367,7 @@ def _in_place(plan: TilePlan, part: Dem, top: int, left: int, bottom: int, right
     from dataclasses import replace
 
     shape = (bottom - top + 1, right - left + 1)
-    a, b, c, d, e, f = plan.transform
-    transform = (a, b, c + a * left + b * top, d, e, f + d * left + e * top)
-    geometry = GridGeometry(shape, transform)
+    geometry = plan.geometry.window(top, left, shape)
     if part.values.shape == shape:
         return replace(part, geometry=geometry)
     x, y = part.geometry.centres(np.zeros(1), np.zeros(1))

@@ -8,6 +8,7 @@ import os
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from wavelet_core.errors import OptionError
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.agreement import agreed
-from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
+from wavelet_gis.crs.frame import CoordinateSystem, Georeference, LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
 from wavelet_gis.io.names import files_of, gdal_path, joint_name
@@ -289,8 +290,8 @@ class TilePlan:
                 files=tuple(SourceFile(str(f[0]), *map(int, f[1:])) for f in raw["files"]),
                 shape=(n_rows, n_columns),
                 transform=tuple(stored.numbers("transform", 6)),
-                rows=tuple(int(row) for row in raw["rows"]),
-                columns=tuple(int(column) for column in raw["columns"]),
+                rows=_ends(stored, "rows", n_rows),
+                columns=_ends(stored, "columns", n_columns),
                 levels=stored.integer("levels", 1, 64),
                 reading=dict(stored.fields("reading")),
                 wavelets=dict(stored.fields("wavelets")),
@@ -340,11 +341,7 @@ def plan_of_rasters(
     OptionError
         A size or a number of levels that makes no tiles.
     """
-    import rasterio
-
     from wavelet_gis.crs.lookup import coordinate_system
-    from wavelet_gis.io.raster import CellWindow, read_dem
-    from wavelet_gis.io.raster.mosaic import first_cell
 
     if tile < 8 or not 1 <= levels <= 64:
         raise OptionError(
@@ -355,56 +352,22 @@ def plan_of_rasters(
             levels=levels,
         )
     wavelets = checked_wavelets(wavelets)
-    paths = [os.path.abspath(path) for path in files_of(data)]
-    for path in paths:
-        if suffix_of(path) in CLOUD_SUFFIXES:
-            raise InputFileError(
-                f"{path}: this is a point cloud, the others are rasters; name files of one kind."
-            )
+    paths = _raster_paths(data)
     reading = {"band": band, "nodata": nodata, "offline": offline}
-    heads = [read_dem(path, window=CellWindow(0, 0, 1, 1), **reading) for path in paths]  # type: ignore[arg-type]
-    place = agreed(
-        paths,
-        [
-            one._replace(
-                wkt=None if crs else one.wkt,
-                vertical_unit=None if vertical_unit else one.vertical_unit,
-            )
-            for _, one in heads
-        ],
-    )
-    grids = []
-    for path, (head, _) in zip(paths, heads, strict=True):
-        with rasterio.open(gdal_path(path)) as dataset:
-            grids.append(GridGeometry(dataset.shape, head.geometry.transform))
-    corners = np.array(
-        [first_cell(paths[0], grids[0], p, g) for p, g in zip(paths, grids, strict=True)]
-    )
-    low = corners.min(axis=0)
-    high = (corners + [grid.shape for grid in grids]).max(axis=0)
-    a, b, c, d, e, f = grids[0].transform
-    transform = (a, b, c + a * low[1] + b * low[0], d, e, f + d * low[1] + e * low[0])
-    shape = (int(high[0] - low[0]), int(high[1] - low[1]))
-    geometry = GridGeometry(shape, tuple(map(float, transform)))  # type: ignore[arg-type]
+    grids, places = _grids_and_places(paths, reading)
+    place = agreed(paths, places, any_crs=bool(crs), any_unit=bool(vertical_unit))
+    geometry, files = _laid_out(paths, grids)
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
-    name = joint_name(paths)
     frame, unit = frame_of_bounds(
-        name, system, grid_bounds(geometry), vertical_unit or place.vertical_unit
+        joint_name(paths), system, grid_bounds(geometry), vertical_unit or place.vertical_unit
     )
-    files = []
-    for path, corner, grid in zip(paths, corners - low, grids, strict=True):
-        stat = os.stat(path)
-        files.append(
-            SourceFile(
-                path, int(corner[0]), int(corner[1]), *grid.shape, stat.st_size, stat.st_mtime_ns
-            )
-        )
+    n_rows, n_columns = geometry.shape
     return TilePlan(
-        files=tuple(files),
-        shape=shape,
+        files=files,
+        shape=geometry.shape,
         transform=geometry.transform,
-        rows=ends_of_tiles(shape[0], tile),
-        columns=ends_of_tiles(shape[1], tile),
+        rows=ends_of_tiles(n_rows, tile),
+        columns=ends_of_tiles(n_columns, tile),
         levels=levels,
         reading=reading,
         wavelets=wavelets,
@@ -412,6 +375,53 @@ def plan_of_rasters(
         frame=frame.to_dict(),
         vertical_unit=unit,
     )
+
+
+def _raster_paths(data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> list[str]:
+    """Return the files, by their whole paths; refuse clouds among them."""
+    paths = [os.path.abspath(path) for path in files_of(data)]
+    for path in paths:
+        if suffix_of(path) in CLOUD_SUFFIXES:
+            raise InputFileError(
+                f"{path}: this is a point cloud, the others are rasters; name files of one kind."
+            )
+    return paths
+
+
+def _grids_and_places(
+    paths: Sequence[str], reading: dict[str, Any]
+) -> tuple[list[GridGeometry], list[Georeference]]:
+    """Return the cells of each raster, and what it says of its coordinates; one cell is read."""
+    import rasterio
+
+    from wavelet_gis.io.raster import CellWindow, read_dem
+
+    grids, places = [], []
+    for path in paths:
+        head, place = read_dem(path, window=CellWindow(0, 0, 1, 1), **reading)
+        with rasterio.open(gdal_path(path)) as dataset:
+            grids.append(GridGeometry(dataset.shape, head.geometry.transform))
+        places.append(place)
+    return grids, places
+
+
+def _laid_out(
+    paths: Sequence[str], grids: Sequence[GridGeometry]
+) -> tuple[GridGeometry, tuple[SourceFile, ...]]:
+    """Return the grid of all cells, and where each file lies in it."""
+    from wavelet_gis.io.raster.mosaic import first_cell
+
+    corners = np.array(
+        [first_cell(paths[0], grids[0], p, g) for p, g in zip(paths, grids, strict=True)]
+    )
+    low = corners.min(axis=0)
+    n_rows, n_columns = (corners + [grid.shape for grid in grids]).max(axis=0) - low
+    whole = grids[0].window(int(low[0]), int(low[1]), (int(n_rows), int(n_columns)))
+    files = []
+    for path, (row, column), grid in zip(paths, (corners - low).tolist(), grids, strict=True):
+        stat = os.stat(path)
+        files.append(SourceFile(path, row, column, *grid.shape, stat.st_size, stat.st_mtime_ns))
+    return whole, tuple(files)
 
 
 def checked_wavelets(wavelets: dict[str, Any] | None) -> dict[str, Any]:
@@ -435,12 +445,28 @@ def _tiles_along(ends: tuple[int, ...], first: int, length: int, reach: int) -> 
     return range(low, high)
 
 
+def _ends(stored: Fields, name: str, n_cells: int) -> tuple[int, ...]:
+    """Return where tiles end, as a file has it: from the first cell to the last, ascending."""
+    ends = stored.integers(name, 0, n_cells - 1)
+    is_ascending = all(a < b for a, b in pairwise(ends)) or ends == [0, 0]
+    if len(ends) < 2 or (ends[0], ends[-1]) != (0, n_cells - 1) or not is_ascending:
+        raise stored.fault(f"{name} do not ascend from 0 to {n_cells - 1}")
+    return tuple(ends)
+
+
+def _pair(stored: Fields, name: str, low: int) -> tuple[int, int]:
+    pair = stored.integers(name, low)
+    if len(pair) != 2:
+        raise stored.fault(f"{name} has {len(pair)} numbers where 2 are due")
+    return pair[0], pair[1]
+
+
 def _lattice(stored: Fields) -> PointLattice:
     return PointLattice(
         scales=tuple(stored.numbers("scales", 3)),  # type: ignore[arg-type]
         offsets=tuple(stored.numbers("offsets", 3)),  # type: ignore[arg-type]
-        first=tuple(stored.integers("first", -(2**32))),  # type: ignore[arg-type]
-        ratio=tuple(stored.integers("ratio", 1)),  # type: ignore[arg-type]
+        first=_pair(stored, "first", -(2**32)),
+        ratio=_pair(stored, "ratio", 1),
         spacing=stored.integer("spacing", 1),
         reach=stored.integer("reach", 1),
         n_points=stored.integer("n_points", 1),

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.errors import InputFileError, TerrainWarning
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.terrain import Terrain, terrain_of_mesh
-from wavelet_gis.tiles.area import Box, area_of
+from wavelet_gis.notes import warn
+from wavelet_gis.tiles.area import Area, Box, area_of
 from wavelet_gis.tiles.index import TileIndex, open_index
 from wavelet_gis.tiles.piece import join
 from wavelet_gis.tiles.plan import Piece
@@ -73,6 +74,11 @@ def extract_region(
         There is no tile set, no such level, or nothing of it in the region.
     OptionError
         A region without an inside, a tolerance below 0, or more than one rule.
+
+    Warns
+    -----
+    TerrainWarning
+        Of pieces in the region that could not be made, so that there are holes.
     """
     found = index if isinstance(index, TileIndex) else open_index(index)
     plan = found.plan
@@ -94,15 +100,17 @@ def extract_region(
             geo.pyramid.mesh(_level(found, piece, below))
             for piece, geo in zip(pieces, geos, strict=True)
         ]
-        told = level or 0
+        finest = level or 0
     else:
+        stage = plan.n_stages - 1
         z_scale = plan.local_frame.z_scale
         chosen = list(pieces_within(found, area, max_error * z_scale))
         pieces = [one.piece for one in chosen]
         meshes = [one.mesh for one in chosen]
-        told = max((found.level_of(one.piece, one.level) for one in chosen), default=0)
-        errors = _told_errors([one.errors for one in chosen], z_scale)
+        finest = max((found.level_of(one.piece, one.level) for one in chosen), default=0)
+        errors = _errors_of([one.errors for one in chosen], z_scale)
         geos = [_loaded(found, piece, found.levels_of(piece.stage)) for piece in pieces[:1]]
+    _warn_of_gaps(found, area, stage)
     if not meshes:
         raise InputFileError(
             "{path}: no tile reaches into the region; see the footprints in its index, and give "
@@ -125,7 +133,7 @@ def extract_region(
         )
         cells = cells[used]
     geo = replace(geos[0], origin=MeshOrigin(), errors=None, notes=())
-    return Region(Surface(geo, mesh, cells, told, errors), tuple(pieces))
+    return Region(Surface(geo, mesh, cells, finest, errors), tuple(pieces))
 
 
 def terrain_of_region(
@@ -150,7 +158,30 @@ def terrain_of_region(
     )
 
 
-def _told_errors(parts: list[NDArray[np.float64]], z_scale: float) -> SurfaceErrors:
+def _warn_of_gaps(index: TileIndex, area: Area, stage: int) -> None:
+    """Warn where pieces of a stage, or of one before it, are not there."""
+    gone = [
+        piece
+        for k in range(stage + 1)
+        for piece in index.plan.pieces(k)
+        if index.records.get(piece, {}).get("status", "missing") in ("missing", "failed")
+        and area.has_piece(piece)
+    ]
+    if gone:
+        warn(
+            TerrainWarning,
+            "pieces_missing",
+            "{path}: {count} pieces there could not be made, the first at stage {stage}, row "
+            "{row}, column {column}, and leave holes (tile again with the same options, which "
+            "makes what is missing)",
+            stacklevel=3,
+            path=index.folder,
+            count=len(gone),
+            **gone[0]._asdict(),
+        )
+
+
+def _errors_of(parts: list[NDArray[np.float64]], z_scale: float) -> SurfaceErrors:
     errors = np.concatenate([np.empty(0), *parts]) / z_scale
     covered = errors[np.isfinite(errors)]
     return SurfaceErrors(

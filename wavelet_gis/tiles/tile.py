@@ -15,7 +15,7 @@ from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.read_back import write_text
 from wavelet_gis.io.scratch import sweep_own
 from wavelet_gis.notes import warn
-from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, told
+from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, stamp_of
 from wavelet_gis.tiles.cloud.plan import LEVELS_OF_POINTS, plan_of_clouds
 from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
 from wavelet_gis.tiles.piece import LOOSE, PIECES, make_piece, read_record, sha256_of
@@ -210,7 +210,7 @@ def run_plan(
         for piece in plan.pieces(stage):
             if stage == 0:
                 files = (plan.files[number] for number in numbers[piece])
-                inputs = {file.path: told(file) for file in files}
+                inputs = {file.path: stamp_of(file) for file in files}
             else:
                 inputs = _parts(place, plan, piece)
             record = read_record(place, piece)
@@ -289,7 +289,7 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
     stages = [f"{PIECES}/{stage}" for stage in range(plan.n_stages)]
     for name in (CUT, SOURCES, *stages):  # what a killed run had begun
         sweep_own(folder / name)
-    if not (folder / PLAN).is_file() or (folder / PLAN).read_text("utf-8") != text:
+    if not is_there or (folder / PLAN).read_text("utf-8", errors="replace") != text:
         with new_file(folder / PLAN, overwrite=True) as scratch:
             write_text(scratch, text)
     return folder

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 
+import laspy
 import numpy as np
 import pytest
 import rasterio
@@ -80,6 +81,27 @@ def test_several_clouds_come_back_into_a_folder(done, refused, tmp_path):
     assert "--overwrite to replace it" in refused("reconstruct", index, tmp_path / "out")
     message = refused("reconstruct", index, index)
     assert "name a folder" in message
+
+
+def test_a_file_without_the_chosen_classes_is_passed_over_and_the_rest_not_called_the_original(
+    done, tmp_path
+):
+    (tmp_path / "in").mkdir()
+    for name, seed in (("a.las", 1), ("b.las", 2)):
+        write_las(tmp_path / "in" / name, 2000, seed=seed)
+    bare = laspy.read(tmp_path / "in" / "b.las")
+    bare.classification[:] = 5
+    bare.write(tmp_path / "in" / "b.las")
+    index = tmp_path / "tiles" / "index.gpkg"
+    options = ("--classes", 2, "--levels", 3, "--workers", 1)
+    done("tile", tmp_path / "in", tmp_path / "tiles", *options)
+    said = done("reconstruct", index, tmp_path / "out").out
+    assert "points in 1 file, " in said
+    assert "of other classes" in said
+    assert "original" not in said
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["a.las"]
+    figures = done("reconstruct", index, tmp_path / "out", "--overwrite", "--json").figures
+    assert figures["is_exact"] is False
 
 
 def heed_interrupts():

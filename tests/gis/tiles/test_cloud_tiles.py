@@ -1,12 +1,14 @@
 """Tiled pyramids of point clouds: seams, integrals, every point back, resuming, lost workers."""
 
 import copy
+import json
 import os
 import random
 import shutil
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import laspy
 import numpy as np
@@ -17,8 +19,10 @@ from gis.tiles.test_tiles import checksums, seams, whole_levels, workers_of
 import wavelet_gis as wg
 from wavelet_core.errors import OptionError
 from wavelet_core.metrics import surface_errors
-from wavelet_gis.errors import InputFileError, OutputFileError, TerrainWarning
+from wavelet_gis.errors import CrsWarning, InputFileError, OutputFileError, TerrainWarning
 from wavelet_gis.tiles.cloud.cut import CUT, source_record
+from wavelet_gis.tiles.cloud.plan import plan_of_clouds
+from wavelet_gis.tiles.cloud.restore import _make_room, names_of_sources
 from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.plan import Piece, TilePlan
 
@@ -287,7 +291,8 @@ def test_a_damaged_file_costs_its_tiles_until_it_is_mended(parts, tiled, tmp_pat
     with pytest.warns(TerrainWarning, match=r"east\.laz: the compressed points cannot be read"):
         broken = wg.tile_clouds(tmp_path / "parts", tmp_path / "t", **OPTIONS)
     assert 0 < len(broken.failed) < 9
-    assert wg.extract_region(broken.index, level=2).surface.mesh.n_faces > 0
+    with pytest.warns(TerrainWarning, match="leave holes"):
+        assert wg.extract_region(broken.index, level=2).surface.mesh.n_faces > 0
     with pytest.raises(InputFileError, match=r"east\.laz was not cut; tile again"):
         wg.restore_source(broken.index, 0, tmp_path / "east.laz")
     east.write_bytes(good)
@@ -328,6 +333,34 @@ def test_chosen_classes_alone_come_back(cloud, tmp_path):
     assert ground.header.point_count == n_points == len(chosen)
 
 
+def test_a_record_of_a_cut_that_lies_is_refused(tiled, tmp_path):
+    shutil.copytree(tiled.index.folder, tmp_path / "t")
+    path = tmp_path / "t" / "sources" / "00000.json"
+    record = json.loads(path.read_text("utf-8"))
+    for damaged in ({**record, "n_points": 10**12}, {**record, "shift": ["a", 0, 0]}):
+        path.write_text(json.dumps(damaged), "utf-8")
+        with pytest.raises(InputFileError, match=r"the cut of .* is damaged"):
+            wg.restore_source(open_index(tmp_path / "t"), 0, tmp_path / "back.laz")
+    del record["n_points"]
+    path.write_text(json.dumps(record), "utf-8")
+    with pytest.raises(InputFileError, match="was not cut"):
+        wg.restore_source(open_index(tmp_path / "t"), 0, tmp_path / "back.laz")
+    assert not (tmp_path / "back.laz").exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="the system promises no room")
+def test_the_room_for_points_is_there_before_they_are(tmp_path):
+    with open(tmp_path / "room", "w+b") as room:
+        _make_room(room, 1 << 20)
+        assert os.fstat(room.fileno()).st_blocks * 512 >= 1 << 20
+
+
+def test_names_that_differ_in_capitals_only_are_told_apart(tiled):
+    files = [tiled.index.plan.files[0]._replace(path=p) for p in ("/a/E.las", "/b/e.las")]
+    plan = replace(tiled.index.plan, files=tuple(files))
+    assert names_of_sources(replace(tiled.index, plan=plan)) == ["E.las", "e_2.las"]
+
+
 def test_one_tile_is_the_plain_pyramid(cloud, tmp_path):
     tiled = wg.tile_clouds(cloud, tmp_path / "t")
     assert tiled.index.plan.n_stages == 1
@@ -359,6 +392,16 @@ def test_a_header_with_other_bounds_than_its_points_is_told_of(tmp_path):
     with pytest.warns(TerrainWarning, match="lie outside of the bounds that the header tells"):
         tiled = wg.tile_clouds(path, tmp_path / "t", levels=3)
     assert tiled.failed
+
+
+def test_a_broken_crs_is_told_of_as_by_a_single_cloud(tmp_path):
+    path = write_las(tmp_path / "a.las", 4000)
+    content = path.read_bytes()
+    path.write_bytes(content.replace(b"PROJCRS", b"XXXXCRS").replace(b"PROJCS", b"XXXXCS"))
+    with pytest.warns(CrsWarning, match="the CRS is broken"):
+        wg.open(path)
+    with pytest.warns(CrsWarning, match="the CRS is broken"):
+        plan_of_clouds(path)
 
 
 def test_refusals(cloud, parts, tmp_path):

@@ -12,7 +12,9 @@ from tools.quantized_mesh_reader import STEPS, bounds_of, decode
 
 import wavelet_gis as wg
 from wavelet_core.errors import OptionError
+from wavelet_core.mesh.triangulation import delaunay_faces
 from wavelet_gis.errors import CrsError, OutputFileError, TerrainWarning
+from wavelet_gis.tiles.globe.tile_mesh import without_slivers
 
 
 def read_set(folder):
@@ -249,6 +251,18 @@ def test_the_same_input_gives_the_same_bytes(tmp_path):
     assert first == {
         p.relative_to(tmp_path / "b"): p.read_bytes() for p in (tmp_path / "b").rglob("*.*")
     }
+
+
+def test_tiles_of_zoom_0_are_not_too_wide_for_whole_numbers():
+    """In steps of zoom 22 they are 37 bits wide, and 64 do not hold the product of two lengths."""
+    rng = np.random.default_rng(3)
+    x, y = rng.integers(0, 1 << 15, (2, 300))
+    faces = delaunay_faces(np.column_stack([x, 50.0 * y]))  # in plan slivers along x
+    mended = without_slivers(x, y, faces, 500.0)
+    assert not np.array_equal(mended, faces)
+    for zoom in (10, 22):
+        wide = without_slivers(x << zoom, y << zoom, faces, 500.0 * 2.0**zoom)
+        assert np.array_equal(wide, mended)
 
 
 def test_a_dem_on_both_sides_of_greenwich_and_the_equator(tmp_path):

@@ -286,7 +286,12 @@ def test_a_bad_tile_is_set_aside_and_mended_later(dem, tmp_path):
         tiled = wg.tile_rasters(names, tmp_path / "t", tile=SIZE, levels=4)
     assert 0 < len(tiled.failed) < 8
     assert "cannot be read" in tiled.failed[0]["reason"]
-    assert wg.extract_region(tiled.index, level=2).surface.mesh.n_faces > 0
+    with pytest.warns(TerrainWarning, match="pieces there could not be made, .* leave holes"):
+        assert wg.extract_region(tiled.index, level=2).surface.mesh.n_faces > 0
+    with pytest.warns(TerrainWarning, match="leave holes"):
+        wg.extract_region(tiled.index, max_error=1.0)
+    left = (500010.0, 5099900.0, 500050.0, 5099950.0)  # no bad tile there, so no word
+    assert wg.extract_region(tiled.index, level=tiled.index.n_levels, bbox=left).pieces
     with pytest.raises(InputFileError, match="is failed; tile again"):
         wg.restored_raster(tiled.index)
     names[1].write_bytes(good)
@@ -334,9 +339,32 @@ def test_refusals(dem, tmp_path):
         wg.extract_region(index, level=99)
     with pytest.raises(InputFileError, match="no tile reaches into the region"):
         wg.extract_region(index, bbox=(0, 0, 1, 1))
+    plan = json.loads(index.plan.to_json())
+    for name, ends in (("rows", []), ("rows", [0, 50, 50, 99]), ("columns", [0, 65, 5000])):
+        (tmp_path / "t" / "plan.json").write_text(json.dumps({**plan, name: ends}), "utf-8")
+        with pytest.raises(InputFileError, match=rf"{name} (do not ascend|is 5000 where)"):
+            open_index(tmp_path / "t")
     (tmp_path / "t" / "plan.json").write_text("{}", "utf-8")
     with pytest.raises(InputFileError, match="format is missing"):
         open_index(tmp_path / "t")
+
+
+def test_a_plan_that_is_no_text_is_replaced_like_another(dem, tmp_path):
+    wg.tile_rasters(dem, tmp_path / "t", tile=100)
+    (tmp_path / "t" / "plan.json").write_bytes(b"\xff\xfe")
+    with pytest.raises(OutputFileError, match="of another input or of other options"):
+        wg.tile_rasters(dem, tmp_path / "t", tile=100)
+    assert wg.tile_rasters(dem, tmp_path / "t", tile=100, overwrite=True).failed == []
+
+
+def test_a_record_that_lacks_something_counts_as_none(dem, tmp_path):
+    wg.tile_rasters(dem, tmp_path / "t", tile=100)
+    path = next((tmp_path / "t" / "pieces" / "0").glob("*.json"))
+    record = json.loads(path.read_text("utf-8"))
+    for damaged in ({**record, "status": []}, {**record, "n_levels": None}, [], {"status": "new"}):
+        path.write_text(json.dumps(damaged), "utf-8")
+        assert open_index(tmp_path / "t").records == {}
+    assert wg.tile_rasters(dem, tmp_path / "t", tile=100).n_made == 1
 
 
 def test_a_scheduler_needs_dask(dem, tmp_path):

@@ -114,10 +114,20 @@ class TestProfile:
         found = wg.profile(pyramid, lines, levels=[0])
         assert set(found.line) == {0, 1}
         rows = found.figures()["profiles"]
+        # Tables and figures count lines as the plot does, from 1.
+        assert [row["line"] for row in rows] == sorted(set(found.table()["line"])) == [1, 2]
         assert [row["length"] for row in rows] == pytest.approx([90, 200])
         page = profile_page(found)
         assert "Line 1" in page
         assert "Line 2" in page
+
+    def test_of_a_line_beside_the_terrain_no_difference_is_claimed(self, pyramid):
+        lines = [[[X + 5, Y - 25], [X + 95, Y - 25]], [[X - 900, Y], [X - 500, Y]]]
+        rows = wg.profile(pyramid, lines, levels=[0, 5]).figures()["profiles"]
+        assert rows[0]["max_difference"] > 0
+        assert all(np.isnan(row["rms_difference"]) for row in rows[2:])
+        assert all(np.isnan(row["max_difference"]) for row in rows[2:])
+        assert "nan" not in profile_page(wg.profile(pyramid, lines, levels=[0, 5]))
 
     def test_of_many_points_the_highest_and_the_lowest_are_drawn(self, pyramid):
         found = wg.profile(pyramid, [[X + 5, Y - 25], [X + 495, Y - 25]], levels=[5], step=0.01)
@@ -142,6 +152,7 @@ class TestProfile:
             ([[X, Y], [X + 100, Y - 100]], {"step": 1e-7}, "larger"),
             ("nonsense.gpkg", {}, "nonsense.gpkg"),
             ([[X, Y, 3], [X, "a", 3]], {}, "no list of x and y"),
+            ([], {}, "no list of x and y"),
         ],
     )
     def test_what_cannot_be_meant_is_refused(self, pyramid, line, options, told):
@@ -182,7 +193,12 @@ class TestContours:
 
     @pytest.mark.parametrize(
         ("options", "told"),
-        [({"interval": 0.0}, "above 0"), ({"interval": 1e-9}, "larger"), ({"level": 7}, "level 7")],
+        [
+            ({"interval": 0.0}, "above 0"),
+            ({"interval": 1e-9}, "larger"),
+            ({"level": 7}, "level 7"),
+            ({"base": float("nan")}, "base is nan"),
+        ],
     )
     def test_what_cannot_be_meant_is_refused(self, pyramid, options, told):
         with pytest.raises(OptionError, match=told):
@@ -210,6 +226,20 @@ class TestDifference:
         np.testing.assert_allclose(up.dem.values, -down.dem.values, atol=1e-5)
         due = pyramid.geo.with_errors().errors_at(0)
         assert wg.difference(pyramid).figures()["rms"] == pytest.approx(due.rmse_surface, rel=1e-3)
+
+    def test_a_dem_in_feet_is_not_taken_from_metres(self, pyramid, tmp_path):
+        feet = write_tif(tmp_path / "feet.tif", hills().astype("f4"))
+        with rasterio.open(feet, "r+") as dataset:
+            dataset.units = ("ft",)
+        with pytest.raises(InputFileError, match=r"feet\.tif: its heights are in ft, .* in metre"):
+            wg.difference(pyramid, less=feet)
+        with rasterio.open(feet, "r+") as dataset:
+            dataset.units = ("m",)
+        assert wg.difference(pyramid, less=feet).figures()["n_cells"] > 0
+
+    def test_a_level_may_be_a_number_of_numpy(self, pyramid):
+        level = np.int64(5)
+        assert wg.difference(pyramid, less=level).figures() == wg.difference(pyramid).figures()
 
     def test_what_does_not_fit_is_refused(self, pyramid, tmp_path):
         other = write_tif(tmp_path / "other.tif", hills().astype("f4"), crs="EPSG:2154")

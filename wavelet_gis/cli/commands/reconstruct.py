@@ -77,7 +77,7 @@ def _of_tiles(arguments: argparse.Namespace, console: Console) -> None:
 def _of_cloud_tiles(arguments: argparse.Namespace, console: Console, index: TileIndex) -> None:
     from wavelet_gis.errors import OutputFileError
     from wavelet_gis.io.atomic import check_output
-    from wavelet_gis.tiles.cloud.restore import names_of_sources, restore_source
+    from wavelet_gis.tiles.cloud.restore import n_chosen, names_of_sources, restore_source
     from wavelet_gis.workflows.reconstruct import check_restored_output
 
     output, names = Path(arguments.output), names_of_sources(index)
@@ -96,14 +96,24 @@ def _of_cloud_tiles(arguments: argparse.Namespace, console: Console, index: Tile
         places = [output / name for name in names]
         for place, file in zip(places, index.plan.files, strict=True):
             check_output(place, overwrite=arguments.overwrite, inputs=(file.path,))
+    counts = [n_chosen(index, number) for number in range(len(names))]
+    # Of a file in which no point was chosen there is nothing to write.
+    numbers = [number for number, (n_here, _) in enumerate(counts) if n_here] or [0]
     n_points = 0
     with console.progress("reconstructing") as progress:
-        for number, place in enumerate(places):
-            n_points += restore_source(index, number, place, overwrite=arguments.overwrite)
-            progress((number + 1) / len(places))
-    files = "" if is_one else f" in {len(places):,} files"
+        for k, number in enumerate(numbers):
+            n_points += restore_source(index, number, places[number], overwrite=arguments.overwrite)
+            progress((k + 1) / len(numbers))
+    files = "" if is_one else f" in {len(numbers):,} file{'s' * (len(numbers) != 1)}"
     size = f"{n_points:,} points{files}"
-    console.say(f"{size}, checksums of all tiles verified, the original; {arguments.output}")
+    n_left_out = sum(n_in_file for _, n_in_file in counts) - n_points
+    verdict = f"without {n_left_out:,} of other classes" if n_left_out else "the original"
+    console.say(f"{size}, checksums of all tiles verified, {verdict}; {arguments.output}")
     console.figures(
-        {"output": str(arguments.output), "kind": "points", "is_exact": True, "size": size}
+        {
+            "output": str(arguments.output),
+            "kind": "points",
+            "is_exact": n_left_out == 0,
+            "size": size,
+        }
     )

@@ -49,6 +49,7 @@ __all__ = [
     "read_cloud",
     "require_laspy",
     "tail_of",
+    "warn_of_crs",
 ]
 
 #: Name of the attribute that is computed rather than read.
@@ -172,9 +173,14 @@ def read_cloud(
         _check_extent(name, layout, points)
     _tell_of_waveforms(name, layout)
     place = las_crs(projection_records(layout, tail, tail_at))
-    for note in place.notes:
-        warn(CrsWarning, "las_crs", "{name}: {fact}", name=name, fact=note, stacklevel=2)
+    warn_of_crs(name, place)
     return cloud, place
+
+
+def warn_of_crs(name: str, place: Georeference) -> None:
+    """Warn of what is odd about the CRS of a file."""
+    for note in place.notes:
+        warn(CrsWarning, "las_crs", "{name}: {fact}", name=name, fact=note, stacklevel=3)
 
 
 def require_laspy() -> Any:

@@ -44,13 +44,6 @@ def read_clouds(
                 f"{any_of(CLOUD_SUFFIXES)}; name files of one kind."
             )
     read = [read_cloud(path, **options) for path in paths]
-    places = [
-        place._replace(
-            wkt=None if any_crs else place.wkt,
-            vertical_unit=None if any_unit else place.vertical_unit,
-        )
-        for _, place in read
-    ]
     cloud = merged_cloud(paths, [cloud for cloud, _ in read])
     if any(attribute.dimension == HEIGHT_ABOVE_GROUND for attribute in cloud.attributes):
         note(
@@ -58,4 +51,5 @@ def read_clouds(
             "heights above the ground are taken from the ground points of the same file; near the "
             "borders of files they are less reliable",
         )
-    return cloud, agreed(paths, places)
+    places = [place for _, place in read]
+    return cloud, agreed(paths, places, any_crs=any_crs, any_unit=any_unit)

@@ -81,9 +81,7 @@ def mosaic(names: Sequence[str], dems: Sequence[Dem]) -> Dem:
             largest=largest,
         )
     nodata = _filled(names[0], first, values, valid)
-    a, b, c, d, e, f = first.geometry.transform
     row, column = (int(k) for k in low)
-    transform = (a, b, c + a * column + b * row, d, e, f + d * column + e * row)
     note(
         "mosaic",
         "{name} and {n_others} more: one raster of {n_rows} x {n_columns} cells",
@@ -96,7 +94,7 @@ def mosaic(names: Sequence[str], dems: Sequence[Dem]) -> Dem:
         first,
         values=values,
         valid=valid,
-        geometry=GridGeometry((n_rows, n_columns), transform),
+        geometry=first.geometry.window(row, column, (n_rows, n_columns)),
         nodata=nodata,
     )
 

@@ -178,15 +178,14 @@ def _read_band(
     require_memory(height * width * BYTES_PER_CELL, os.fspath(path), f"{height} x {width} cells")
     window = ((row, row + height), (column, column + width))
     values = dataset.read(index, window=window)
-    a, b, c, d, e, f = tuple(dataset.transform)[:6]
-    transform = (a, b, c + a * column + b * row, d, e, f + d * column + e * row)
+    whole = GridGeometry((dataset.height, dataset.width), tuple(dataset.transform)[:6])
     valid = _valid_cells(dataset, index, values, nodata, path, window)
     n_valid = int(np.count_nonzero(valid))
     require_memory(n_valid * BYTES_PER_VERTEX, os.fspath(path), f"{n_valid:,} cells with data")
     dem = Dem(
         values=values,
         valid=valid,
-        geometry=GridGeometry(values.shape, transform),
+        geometry=whole.window(row, column, values.shape),
         nodata=_nodata(dataset, index),
         scale=float(dataset.scales[index - 1]),
         offset=float(dataset.offsets[index - 1]),

@@ -34,11 +34,6 @@ def read_dems(
         A file that cannot be read or is of another grid than the first.
     """
     read = [read_dem(path, **options) for path in paths]
-    places = [
-        place._replace(
-            wkt=None if any_crs else place.wkt,
-            vertical_unit=None if any_unit else place.vertical_unit,
-        )
-        for _, place in read
-    ]
-    return mosaic(paths, [dem for dem, _ in read]), agreed(paths, places)
+    dem = mosaic(paths, [dem for dem, _ in read])
+    places = [place for _, place in read]
+    return dem, agreed(paths, places, any_crs=any_crs, any_unit=any_unit)

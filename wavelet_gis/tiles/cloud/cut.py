@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import WaveletError
+from wavelet_gis._fields import holds_fields
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.las.batches import each_batch, read_head
@@ -37,11 +38,17 @@ __all__ = [
     "points_of",
     "record_dtype",
     "source_record",
-    "told",
+    "stamp_of",
 ]
 
 #: Folders of the cut, which is thrown away at the end, and of what is kept of the inputs.
 CUT, SOURCES = "cut", "sources"
+
+#: What a record has, by its status; one that lacks it is damaged, and counts as none.
+_FIELDS: dict[str, dict[str, type]] = {
+    "whole": {"n_points": int, "n_in_file": int, "n_bytes": int, "shift": list, "slices": list},
+    "failed": {"reason": str},
+}
 
 #: Points read at once.
 _BATCH = 1_000_000
@@ -82,8 +89,8 @@ class CutPoints(NamedTuple):
         return cls(np.frombuffer(content, dtype, n_points, 12 * n_points), file, row)
 
 
-def told(file: SourceFile) -> str:
-    """Return what is remembered of an input, by which it is known again."""
+def stamp_of(file: SourceFile) -> str:
+    """Return size and time of an input, by which it is known again."""
     return f"{file.n_bytes} bytes of {file.changed}"
 
 
@@ -93,7 +100,7 @@ def source_record(folder: str | os.PathLike[str], number: int) -> dict[str, Any]
         record = json.loads((Path(folder) / SOURCES / f"{number:05d}.json").read_text("utf-8"))
     except (OSError, ValueError):
         return None
-    return record if isinstance(record, dict) and "status" in record else None
+    return record if holds_fields(record, _FIELDS) else None
 
 
 def is_cut(folder: str | os.PathLike[str], plan: TilePlan, number: int) -> bool:
@@ -104,7 +111,7 @@ def is_cut(folder: str | os.PathLike[str], plan: TilePlan, number: int) -> bool:
         record is not None
         and record["status"] == "whole"
         and record.get("plan") == plan.checksum
-        and record.get("input") == told(plan.files[number])
+        and record.get("input") == stamp_of(plan.files[number])
         and points.is_file()
         and points.stat().st_size == record["n_bytes"]
     )
@@ -128,7 +135,7 @@ def make_cut(folder: str, number: int) -> dict[str, Any]:
     path = Path(folder) / PLAN
     plan = TilePlan.from_json(path.read_text("utf-8"), str(path))
     file = plan.files[number]
-    record: dict[str, Any] = {"plan": plan.checksum, "input": told(file), "source": file.path}
+    record: dict[str, Any] = {"plan": plan.checksum, "input": stamp_of(file), "source": file.path}
     for name in (CUT, SOURCES):
         (Path(folder) / name).mkdir(exist_ok=True)
     try:
@@ -214,6 +221,8 @@ def _by_tile(
 ) -> list[tuple[Piece, NDArray[np.int64]]]:
     """Return for each tile which points are in it or within reach of it, ascending."""
     assert plan.points is not None
+    if len(rows) == 0:  # a batch in which no point is of the chosen classes
+        return []
     within = plan.points.reach_in_cells
     spans = []
     for at, ends, reach in ((rows, plan.rows, within[0]), (columns, plan.columns, within[1])):

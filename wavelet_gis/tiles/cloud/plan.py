@@ -15,7 +15,7 @@ from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
-from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, laspy_header
+from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, laspy_header, warn_of_crs
 from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.points.aside import DUPLICATE_RULES
 from wavelet_gis.model.points.cloud import PointCloud
@@ -86,6 +86,11 @@ def plan_of_clouds(
         Files that cannot be read, or that contradict each other.
     OptionError
         A size or a number of levels that makes no tiles.
+
+    Warns
+    -----
+    CrsWarning
+        What is odd about the CRS of a file, or that there is none.
     """
     import shapely
 
@@ -109,16 +114,10 @@ def plan_of_clouds(
             )
     heads = [read_head(path) for path in paths]
     _require_alike(paths, heads)
-    place = agreed(
-        paths,
-        [
-            head.place._replace(
-                wkt=None if crs else head.place.wkt,
-                vertical_unit=None if vertical_unit else head.place.vertical_unit,
-            )
-            for head in heads
-        ],
-    )
+    places = [head.place for head in heads]
+    for path, one in zip(paths, places, strict=True):
+        warn_of_crs(path, one)
+    place = agreed(paths, places, any_crs=bool(crs), any_unit=bool(vertical_unit))
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
     name = joint_name(paths)
     scales, offsets = heads[0].layout.scales, heads[0].layout.offsets
@@ -140,6 +139,7 @@ def plan_of_clouds(
         system,
         (x_ends[0], y_ends[0], x_ends[1], y_ends[1]),
         vertical_unit or place.vertical_unit,
+        place.fault,
     )
     first_column, first_row = (int(value) for value in low.min(axis=0))
     last_column, last_row = (int(value) for value in high.max(axis=0))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_gis._fields import Fields
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.las.cloud_writer import record_array, write_records
@@ -23,21 +25,44 @@ from wavelet_gis.tiles.piece import LOOSE, PIECES, sha256_of
 from wavelet_gis.tiles.plan import Piece
 from wavelet_gis.workflows.reconstruct import reconstruct
 
-__all__ = ["names_of_sources", "restore_source"]
+__all__ = ["n_chosen", "names_of_sources", "restore_source"]
 
 
 def names_of_sources(index: TileIndex) -> list[str]:
-    """Return a name for each input, that of its file; where two have the same, with a number."""
+    """Return a name for each input, that of its file; where two have the same, with a number.
+
+    Names that differ in capitals only are the same to some systems.
+    """
     names: list[str] = []
+    taken: set[str] = set()
     for file in index.plan.files:
         stem, suffix = os.path.splitext(os.path.basename(file.path))
         if stem.lower().endswith(".copc"):
             stem = stem[:-5]
         name, k = f"{stem}{suffix}", 2
-        while name in names:
+        while name.casefold() in taken:
             name, k = f"{stem}_{k}{suffix}", k + 1
         names.append(name)
+        taken.add(name.casefold())
     return names
+
+
+def n_chosen(index: TileIndex, number: int) -> tuple[int, int]:
+    """Return how many points of an input the tiles have, and how many it had.
+
+    Parameters
+    ----------
+    index : TileIndex
+    number : int
+        Of the input in the plan.
+
+    Raises
+    ------
+    InputFileError
+        It was not cut.
+    """
+    source = _source_of(index, number)
+    return source.integer("n_points"), source.integer("n_in_file")
 
 
 def restore_source(
@@ -65,14 +90,8 @@ def restore_source(
     OutputFileError
         The file cannot be written.
     """
-    folder = index.folder
-    source = source_record(folder, number)
-    if source is None or source["status"] != "whole":
-        raise InputFileError(
-            f"{folder}: {index.plan.files[number].path} was not cut; tile again with the same "
-            "options, which makes what is missing."
-        )
-    n_points = int(source["n_points"])
+    folder, source = index.folder, _source_of(index, number)
+    n_points = source.integer("n_points")
     if n_points == 0:
         raise InputFileError(
             f"{folder}: no point of {index.plan.files[number].path} was chosen; there is nothing "
@@ -81,13 +100,16 @@ def restore_source(
     head = folder / SOURCES / f"{number:05d}.head"
     tail = (folder / SOURCES / f"{number:05d}.tail").read_bytes()
     layout = parse_layout(str(head), head.read_bytes())
+    if n_points > layout.n_points:
+        raise source.fault(f"n_points is {n_points}, the file had {layout.n_points}")
     dtype = record_dtype(folder, number)
+    shifts = source.integers("shift", -(2**32), 2**32)
     with (
         new_file(path, overwrite=overwrite) as scratch,
         tempfile.TemporaryFile(dir=scratch.parent) as room,
     ):
         try:
-            room.truncate(n_points * dtype.itemsize)
+            _make_room(room, n_points * dtype.itemsize)
         except OSError as error:
             raise OutputFileError(f"{path}: there is no room for the points ({error}).") from error
         records: NDArray[Any] = np.memmap(room, dtype, "r+", shape=(n_points,))
@@ -97,8 +119,8 @@ def restore_source(
             if len(rows) and (rows.min() < 0 or rows.max() >= n_points):
                 raise InputFileError(f"{folder}: a tile has points that no input has; tile anew.")
             of_file = part.records[part.file == number].copy()
-            for axis, shift in zip("XYZ", source["shift"], strict=True):
-                of_file[axis] = of_file[axis].astype(np.int64) - int(shift)
+            for axis, shift in zip("XYZ", shifts, strict=True):
+                of_file[axis] = of_file[axis].astype(np.int64) - shift
             records[rows] = of_file
             is_there[rows] = True
         if not is_there.all():
@@ -111,10 +133,37 @@ def restore_source(
             layout,
             records,
             tail,
-            source["tail_at"],
-            is_altered=n_points != source["n_in_file"],
+            None if source["tail_at"] is None else source.integer("tail_at"),
+            is_altered=n_points != source.integer("n_in_file"),
         )
     return n_points
+
+
+def _source_of(index: TileIndex, number: int) -> Fields:
+    """Return the record of the cut of an input."""
+    name = index.plan.files[number].path
+    record = source_record(index.folder, number)
+    if record is None or record["status"] != "whole":
+        raise InputFileError(
+            f"{index.folder}: {name} was not cut; tile again with the same options, which makes "
+            "what is missing."
+        )
+    return Fields(record, f"the cut of {name}", InputFileError)
+
+
+def _make_room(room: IO[bytes], n_bytes: int) -> None:
+    """Let a file have so many bytes on the disk, where the system can promise them.
+
+    On a disk that is full, writing to a map of bytes that are not there ends by a signal.
+    """
+    room.truncate(n_bytes)
+    try:
+        os.posix_fallocate(room.fileno(), 0, n_bytes)
+    except AttributeError:  # Windows and macOS
+        return
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.EOPNOTSUPP):  # such a file system
+            raise
 
 
 def _parts(index: TileIndex, number: int, dtype: np.dtype[Any]) -> Iterator[CutPoints]:

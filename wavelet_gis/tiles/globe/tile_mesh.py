@@ -7,7 +7,7 @@ that level ground is round as the earth is, and its chords stay near that.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -319,6 +319,7 @@ def _altitudes(
     x: NDArray[np.int64], y: NDArray[np.int64], faces: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the smallest altitude of each face, negative where folded, and its longest edge."""
+    x, y = _multiplied_safely(x), _multiplied_safely(y)
     ends = np.roll(faces, -1, axis=1)
     squared = (x[ends] - x[faces]) ** 2 + (y[ends] - y[faces]) ** 2
     longest = squared.argmax(axis=1)
@@ -378,10 +379,21 @@ def _keys(x: NDArray[np.int64], y: NDArray[np.int64]) -> NDArray[np.complex128]:
     return x + 1j * y
 
 
+def _multiplied_safely(places: NDArray[np.int64]) -> NDArray[Any]:
+    """Return places whose differences can be multiplied: themselves, or, far apart, as floats.
+
+    The tiles of zoom 0 are ``STEPS << zoom`` wide in steps of the finest zoom, 37 bits at zoom 22.
+    Differences are exact as floats, and products of two are in the order of the exact ones.
+    """
+    extent = int(places.max()) - int(places.min()) if len(places) else 0
+    return places if extent < 1 << 31 else places.astype(np.float64)
+
+
 def _doubled_areas(
     x: NDArray[np.int64], y: NDArray[np.int64], faces: NDArray[np.int64]
-) -> NDArray[np.int64]:
+) -> NDArray[Any]:
     a, b, c = faces.T
+    x, y = _multiplied_safely(x), _multiplied_safely(y)
     return (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
 
 

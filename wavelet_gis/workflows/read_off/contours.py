@@ -114,11 +114,14 @@ def contours(
     Raises
     ------
     OptionError
-        An interval that is no length or gives too many contours, or a level that is not there.
+        An interval that is no length or gives too many contours, a base that is no height, or a
+        level that is not there.
     """
     geo = pyramid_of(data)
     if interval is not None and not 0 < interval < np.inf:
         raise OptionError("{0} is {given}; give one above 0.", "interval", given=interval)
+    if not np.isfinite(base):
+        raise OptionError("{0} is {given}; give a height.", "base", given=base)
     finest = geo.frame.to_file(geo.pyramid.synthesise().vertices)
     relief = float(finest[:, 2].max() - finest[:, 2].min())
     chosen = interval or round_interval(relief)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from wavelet_core.errors import OptionError
-from wavelet_gis.errors import InputFileError
+from wavelet_gis.crs.frame import VERTICAL_UNITS, Georeference, vertical_unit_name
+from wavelet_gis.errors import CrsError, InputFileError
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.rasterise import rasterise
@@ -18,6 +19,9 @@ from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 from wavelet_gis.workflows.read_off.levels import checked_levels
 
 __all__ = ["Difference", "difference"]
+
+#: Units of height that differ by less than this part of one are taken for the same.
+SAME_UNIT = 1e-5
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +84,12 @@ def difference(
     OptionError
         A level that is not there, or a cell size beside a DEM.
     InputFileError
-        A DEM that cannot be read, has another CRS, or lies beside the terrain.
+        A DEM that cannot be read, has another CRS or unit of height, or lies beside the terrain.
     """
     geo = pyramid_of(data)
     checked_levels(geo, [level])
     mesh = geo.pyramid.mesh(level)
-    if less is None or isinstance(less, int):
+    if less is None or isinstance(less, int | np.integer):
         other = checked_levels(geo, [geo.pyramid.n_levels if less is None else less])[0]
         finest = geo.pyramid.mesh(other)
         geometry = grid_of(geo, finest if other > level else mesh, cell_size)
@@ -109,10 +113,26 @@ def difference(
 
 def _read(geo: GeoPyramid, path: str | os.PathLike[str]) -> Dem:
     from wavelet_gis.crs.agreement import agreed
-    from wavelet_gis.crs.frame import Georeference
     from wavelet_gis.io.raster import read_dem
 
     dem, place = read_dem(path)
+    name = os.fspath(path)
     own = Georeference(wkt=geo.system.wkt, vertical_unit=place.vertical_unit)
-    agreed([geo.source_name, os.fspath(path)], [own, place])
+    agreed([geo.source_name, name], [own, place])
+    _require_unit(geo, name, place.vertical_unit)
     return dem
+
+
+def _require_unit(geo: GeoPyramid, name: str, unit: str | None) -> None:
+    """Refuse a DEM that names another length for its heights than the pyramid has."""
+    try:
+        here = VERTICAL_UNITS.get(vertical_unit_name(unit)) if unit else None
+    except CrsError:  # no length that we know, so nothing is claimed
+        here = None
+    there = VERTICAL_UNITS.get(geo.vertical_unit)
+    # Two kinds of foot differ by less than heights are known to.
+    if here is not None and there is not None and abs(here / there - 1.0) > SAME_UNIT:
+        raise InputFileError(
+            f"{name}: its heights are in {unit}, those of {geo.source_name} in "
+            f"{geo.vertical_unit}; convert one of them first."
+        )

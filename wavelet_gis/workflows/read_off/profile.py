@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -64,9 +64,12 @@ class Profile:
     heights: FloatArray
 
     def table(self) -> dict[str, NDArray[Any]]:
-        """Return the columns ``line``, ``distance``, ``x``, ``y``, and ``z_00`` by level."""
+        """Return the columns ``line``, ``distance``, ``x``, ``y``, and ``z_00`` by level.
+
+        Lines count from 1, as in the plot.
+        """
         columns: dict[str, NDArray[Any]] = {
-            "line": self.line,
+            "line": self.line + 1,
             "distance": self.distance,
             "x": self.places[:, 0],
             "y": self.places[:, 1],
@@ -108,7 +111,10 @@ class Profile:
         return {}
 
     def figures(self) -> dict[str, Any]:
-        """Return length, relief and difference from the finest, by line and level."""
+        """Return length, relief and difference from the finest, by line (from 1) and level.
+
+        NaN, in JSON null, where a level has no height along a line.
+        """
         finest = self.heights[:, int(np.argmax(self.levels))]
         rows = []
         for line in np.unique(self.line):
@@ -116,16 +122,15 @@ class Profile:
             for k, level in enumerate(self.levels):
                 z = self.heights[is_here, k]
                 off = z - finest[is_here]
-                known = off[np.isfinite(off)]
                 rows.append(
                     {
-                        "line": int(line),
+                        "line": int(line) + 1,
                         "length": float(self.distance[is_here].max()),
                         "level": level,
                         "lowest": _of(np.min, z),
                         "highest": _of(np.max, z),
-                        "rms_difference": float(np.sqrt((known**2).mean())) if len(known) else 0.0,
-                        "max_difference": float(np.abs(known).max(initial=0.0)),
+                        "rms_difference": _of(lambda d: np.sqrt((d**2).mean()), off),
+                        "max_difference": _of(np.max, np.abs(off)),
                     }
                 )
         return {"levels": list(self.levels), "n_points": len(self.line), "profiles": rows}
@@ -243,7 +248,7 @@ def _lines_in_frame(geo: GeoPyramid, given: Any) -> list[FloatArray]:
     else:
         try:
             arrays = _arrays(given)
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, LookupError) as error:
             raise OptionError(
                 "{0} is no list of x and y ({why}); give one such as [[x, y], [x, y]].",
                 "line",
@@ -273,6 +278,7 @@ def _arrays(given: Any) -> list[FloatArray]:
     return arrays
 
 
-def _of(function: Any, z: FloatArray) -> float:
+def _of(function: Callable[[FloatArray], Any], z: FloatArray) -> float:
+    """Return a figure of the values that are known; NaN where none is."""
     known = z[np.isfinite(z)]
     return float(function(known)) if len(known) else float("nan")
