@@ -16,7 +16,6 @@ from wavelet_gis.tiles.piece import PIECES, read_record
 from wavelet_gis.tiles.plan import PLAN, Piece, SourceFile, TilePlan
 from wavelet_gis.tiles.tile import run_plan
 
-
 #: A hundred thousand tiles take some ten minutes.
 WHERE_ASKED = pytest.mark.skipif(
     not os.environ.get("TERRAIN_WAVELETS_HUGE_FILES"), reason="asked for by that variable"
