@@ -18,7 +18,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "output",
         help="ending in .gpkg for a pyramid; else a raster or a point cloud, as the input was",
     )
-    scales = parser.add_argument_group("scales")
+    _add_scales(parser.add_argument_group("scales"))
+    _add_noise(parser.add_argument_group("noise"))
+    add_overwrite_argument(parser)
+    add_layers_argument(parser, default=None)
+
+
+def _add_scales(scales: argparse._ArgumentGroup) -> None:
+    """Add what scales are changed by."""
     scales.add_argument(
         "--gain",
         dest="gains",
@@ -51,7 +58,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave out the coarsest surface too, so that the details remain by themselves",
     )
-    noise = parser.add_argument_group("noise")
+
+
+def _add_noise(noise: argparse._ArgumentGroup) -> None:
+    """Add what noise is taken out by."""
     noise.add_argument(
         "--denoise",
         type=_sigma,
@@ -91,8 +101,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="to take noise from (default z); again for others",
     )
-    add_overwrite_argument(parser)
-    add_layers_argument(parser, default=None)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
