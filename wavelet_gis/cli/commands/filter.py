@@ -49,7 +49,7 @@ def _add_scales(scales: argparse._ArgumentGroup) -> None:
         type=_metres,
         metavar="LO:HI",
         help="keep details of this size on the ground only (median edge length of the mesh they "
-        "belong to), in metres where the CRS tells its unit, else in its own; 'info' and "
+        "belong to), in metres where the CRS states its unit, else in its own; 'info' and "
         "'details' list the sizes. An open end is left empty, as in 10:",
     )
     scales.add_argument(
@@ -78,7 +78,7 @@ def _add_noise(noise: argparse._ArgumentGroup) -> None:
         default=0.0,
         metavar="LENGTH|auto",
         help="distance at which the correlation of the noise has fallen to 1/e, in metres where "
-        "the CRS tells its unit; auto estimates it. By default the noise is white",
+        "the CRS states its unit; auto estimates it. By default the noise is white",
     )
     noise.add_argument(
         "--local-noise", action="store_true", help="the noise differs by place: measure it there"
