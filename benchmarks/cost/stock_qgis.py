@@ -289,19 +289,20 @@ def prepare(folder: Path, n: int) -> dict[str, str]:
     return {name: str(path) for name, path in files.items()}
 
 
-def child(arguments: list[str]) -> None:
-    """Run one case in this process and print what was seen as JSON."""
-    folder, case, packages, cancel_at, n = arguments
-    if packages == "stock":
-        installed = PathFinder.find_spec
+def hide_packages() -> None:
+    """Let no package be found that QGIS does not bring; the plugin's own copies are."""
+    installed = PathFinder.find_spec
 
-        def find_spec(name, path=None, target=None):
-            is_hidden = name in EXTRA and "vendored" not in str(path)
-            return None if is_hidden else installed(name, path, target)
+    def find_spec(name, path=None, target=None):
+        is_hidden = name in EXTRA and "vendored" not in str(path)
+        return None if is_hidden else installed(name, path, target)
 
-        PathFinder.find_spec = find_spec  # the plugin's own copies are found
-    plugins = Path(folder) / "plugins"
-    from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingFeedback
+    PathFinder.find_spec = find_spec
+
+
+def start_qgis(plugins: Path):
+    """Start QGIS with the plugin; return the application, which has to be kept."""
+    from qgis.core import QgsApplication
 
     application = QgsApplication([], False)
     application.initQgis()
@@ -312,19 +313,20 @@ def child(arguments: list[str]) -> None:
     qgis.utils.updateAvailablePlugins()
     assert qgis.utils.loadPlugin("terrain_wavelets")
     assert qgis.utils.startProcessingPlugin("terrain_wavelets")
-    files = prepare(Path(folder), int(n))
-    files["out"] = str(Path(tempfile.mkdtemp(dir=folder)) / "out")
+    return application
+
+
+def new_watch():
+    """Return a feedback that notes when the bar moves and when the cancel button is looked at."""
+    from qgis.core import QgsProcessingFeedback
 
     class Watch(QgsProcessingFeedback):
-        """Notes when the bar moves and when the cancel button is looked at."""
-
         def __init__(self) -> None:
             super().__init__(False)
             now = time.process_time()
             self.began, self.moved, self.asked, self.shown = now, now, now, -1.0
             self.stage, self.errors = "the start", []
             self.longest = {"moves": (0.0, 0.0, ""), "asks": (0.0, 0.0, "")}
-            self.first = None
 
         def gap(self, kind: str, since: float) -> float:
             now = time.process_time()
@@ -353,24 +355,43 @@ def child(arguments: list[str]) -> None:
         def pushWarning(self, warning: str) -> None:
             pass
 
+    return Watch()
+
+
+def cancel_after(watch, seconds: float) -> list[float]:
+    """Cancel after so many seconds of the processor; return a list that gets the time of it."""
+    cancelled: list[float] = []
+
+    def cancel() -> None:
+        while time.process_time() - watch.began < seconds:
+            time.sleep(0.01)
+        cancelled.append(time.process_time())
+        watch.cancel()
+
+    if seconds > 0:
+        threading.Thread(target=cancel, daemon=True).start()
+    return cancelled
+
+
+def child(arguments: list[str]) -> None:
+    """Run one case in this process and print what was seen as JSON."""
+    folder, case, packages, cancel_at, n = arguments
+    if packages == "stock":
+        hide_packages()
+    application = start_qgis(Path(folder) / "plugins")
+    from qgis.core import QgsProcessingContext
+
+    files = prepare(Path(folder), int(n))
+    files["out"] = str(Path(tempfile.mkdtemp(dir=folder)) / "out")
     name, parameters = {**CASES, **INPUTS}[case]
     filled = {
         key: value.format(**files) if isinstance(value, str) else value
         for key, value in parameters.items()
     }
-    registry = QgsApplication.processingRegistry()
+    registry = application.processingRegistry()
     algorithm = registry.algorithmById(f"terrainwavelets:{name}").create()
-    context, watch = QgsProcessingContext(), Watch()
-    cancelled: list[float] = []
-
-    def cancel() -> None:
-        while time.process_time() - watch.began < float(cancel_at):
-            time.sleep(0.01)
-        cancelled.append(time.process_time())
-        watch.cancel()
-
-    if float(cancel_at) > 0:
-        threading.Thread(target=cancel, daemon=True).start()
+    context, watch = QgsProcessingContext(), new_watch()
+    cancelled = cancel_after(watch, float(cancel_at))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     is_fine, why = algorithm.checkParameterValues(filled, context)
     done = False

@@ -153,7 +153,7 @@ def argument_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog=PROGRAM,
         description="Terrain as a reversible wavelet pyramid of TINs.",
-        epilog=f"'{PROGRAM} COMMAND --help' tells the options of a command.",
+        epilog=f"'{PROGRAM} COMMAND --help' lists the options of a command.",
     )
     parser.add_argument("--version", action="version", version=f"{PROGRAM} {_version()}")
     parser.add_argument(

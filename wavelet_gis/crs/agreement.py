@@ -60,15 +60,15 @@ def agreed(
                 "that is a mistake, give the unit of all with {0}.",
                 "vertical_unit",
                 name=name,
-                here=place.vertical_unit or "not told",
+                here=place.vertical_unit or "not given",
                 first=names[0],
-                there=first.vertical_unit or "not told",
+                there=first.vertical_unit or "not given",
             )
     return first
 
 
 def _described(place: Georeference) -> str:
-    return coordinate_system(place.wkt).name if place.wkt else "not told"
+    return coordinate_system(place.wkt).name if place.wkt else "not given"
 
 
 def _is_same(one: str | None, other: str | None) -> bool:

@@ -238,7 +238,7 @@ def run_plan(
             TerrainWarning,
             "tiles_set_aside",
             "{count} of {n_pieces} pieces could not be made and were set aside, the first at stage "
-            "{stage}, row {row}, column {column}: {reason} (mend that and start again; the rest is "
+            "{stage}, row {row}, column {column}: {reason} (fix that and start again; the rest is "
             "kept)",
             stacklevel=4,
             count=len(tiled.failed),

@@ -360,7 +360,7 @@ def _in_file(noise: Noise, unit: float, metre: float) -> Noise:
 
 def _warn_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
     """Warn that noise and relief could not be told apart."""
-    kind = "white, since its range is not to be told either, and " if noise_range else ""
+    kind = "white, since its range cannot be told from it either, and " if noise_range else ""
     warn(
         TerrainWarning,
         "relief_as_fine_as_the_mesh",

@@ -389,7 +389,7 @@ def test_a_header_with_other_bounds_than_its_points_is_told_of(tmp_path):
     content = bytearray(path.read_bytes())
     content[179:187] = np.float64(500050.0).tobytes()  # largest x
     path.write_bytes(content)
-    with pytest.warns(TerrainWarning, match="lie outside of the bounds that the header tells"):
+    with pytest.warns(TerrainWarning, match="lie outside of the bounds that the header states"):
         tiled = wg.tile_clouds(path, tmp_path / "t", levels=3)
     assert tiled.failed
 

@@ -14,7 +14,9 @@ import wavelet_gis as wg
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.triangulation import delaunay_faces
 from wavelet_gis.errors import CrsError, OutputFileError, TerrainWarning
-from wavelet_gis.tiles.globe.tile_mesh import without_slivers
+from wavelet_gis.tiles.globe.tile_grid import STEPS as TILE_STEPS
+from wavelet_gis.tiles.globe.tile_grid import Tile
+from wavelet_gis.tiles.globe.tile_mesh import TileMesh, errors_on, on_tile, without_slivers
 
 
 def read_set(folder):
@@ -263,6 +265,24 @@ def test_tiles_of_zoom_0_are_not_too_wide_for_whole_numbers():
     for zoom in (10, 22):
         wide = without_slivers(x << zoom, y << zoom, faces, 500.0 * 2.0**zoom)
         assert np.array_equal(wide, mended)
+
+
+def test_vertices_that_fall_together_across_an_edge_leave_no_folded_faces():
+    """One each side of the edge from the south-west corner to the east, in one step of the tile."""
+    side = 2 * TILE_STEPS
+    #           SW  SE    E      NE    NW    below  above
+    x = np.array([0, side, side, side, 0, 1001, 999])
+    y = np.array([0, 0, 30000, side, side, 458, 458])
+    faces = np.array([[0, 1, 5], [1, 2, 5], [2, 0, 5], [0, 2, 6], [2, 3, 6], [3, 4, 6], [4, 0, 6]])
+    tile, zoom = Tile(0, 0, 0), 1
+    drawn = on_tile(TileMesh(x, y, np.arange(7), faces), tile, zoom)
+    corners = np.stack([drawn.u, drawn.v], axis=1)[drawn.faces]
+    (a, b), (c, d) = (corners[:, k].T - corners[:, 0].T for k in (1, 2))
+    assert (a * d - b * c > 0).all()
+    assert (a * d - b * c).sum() == 2 * TILE_STEPS**2
+    assert (len(drawn.faces), drawn.n_folded) == (5, 0)
+    points = np.array([[2000.0, 500.0, 3.0]])
+    assert np.isfinite(errors_on(drawn, tile, zoom, 1.0, points)).all()
 
 
 def test_a_dem_on_both_sides_of_greenwich_and_the_equator(tmp_path):

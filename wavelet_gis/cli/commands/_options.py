@@ -258,7 +258,7 @@ def add_max_error_argument(rule: Any, help_text: str) -> None:
         metavar="M",
         help=f"{help_text}; in the unit of z. By place: a raster, or a formula such as "
         "'max(0.1, 0.02 * slope)' of z and slope (degrees). Points that share x and y with a "
-        "vertex are told of",
+        "vertex are reported",
     )
 
 

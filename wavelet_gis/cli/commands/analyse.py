@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar="M",
         help="stop before the largest vertical error at the vertices is above this, in the unit of "
-        "z; points that share x and y with a vertex are told of",
+        "z; points that share x and y with a vertex are reported",
     )
     parser.add_argument(
         "--max-rms", type=float, metavar="M", help="the same for the root mean square"

@@ -64,7 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--validate",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="tell how well blocks of the map are predicted from the others (default)",
+        help="say how well blocks of the map are predicted from the others (default)",
     )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of samples and starts")
     add_cell_size_argument(parser)

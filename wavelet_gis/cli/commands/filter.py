@@ -18,7 +18,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "output",
         help="ending in .gpkg for a pyramid; else a raster or a point cloud, as the input was",
     )
-    scales = parser.add_argument_group("scales")
+    _add_scales(parser.add_argument_group("scales"))
+    _add_noise(parser.add_argument_group("noise"))
+    add_overwrite_argument(parser)
+    add_layers_argument(parser, default=None)
+
+
+def _add_scales(scales: argparse._ArgumentGroup) -> None:
+    """Add what scales are changed by."""
     scales.add_argument(
         "--gain",
         dest="gains",
@@ -42,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_metres,
         metavar="LO:HI",
         help="keep details of this size on the ground only (median edge length of the mesh they "
-        "belong to), in metres where the CRS tells its unit, else in its own; 'info' and "
+        "belong to), in metres where the CRS states its unit, else in its own; 'info' and "
         "'details' list the sizes. An open end is left empty, as in 10:",
     )
     scales.add_argument(
@@ -51,7 +58,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave out the coarsest surface too, so that the details remain by themselves",
     )
-    noise = parser.add_argument_group("noise")
+
+
+def _add_noise(noise: argparse._ArgumentGroup) -> None:
+    """Add what noise is taken out by."""
     noise.add_argument(
         "--denoise",
         type=_sigma,
@@ -68,7 +78,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=0.0,
         metavar="LENGTH|auto",
         help="distance at which the correlation of the noise has fallen to 1/e, in metres where "
-        "the CRS tells its unit; auto estimates it. By default the noise is white",
+        "the CRS states its unit; auto estimates it. By default the noise is white",
     )
     noise.add_argument(
         "--local-noise", action="store_true", help="the noise differs by place: measure it there"
@@ -91,8 +101,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="to take noise from (default z); again for others",
     )
-    add_overwrite_argument(parser)
-    add_layers_argument(parser, default=None)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> None:

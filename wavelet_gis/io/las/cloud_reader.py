@@ -138,7 +138,7 @@ def read_cloud(
     array = points.array
     is_part = bbox is not None or resolution is not None
     if len(array) < layout.n_points and not is_part:
-        _tell(
+        _warn(
             "points_missing",
             "{name}: the header announces {n_announced} points, the file ends after {n_points}; "
             "those are used",
@@ -171,7 +171,7 @@ def read_cloud(
     )
     if not is_part:
         _check_extent(name, layout, points)
-    _tell_of_waveforms(name, layout)
+    _warn_of_waveforms(name, layout)
     place = las_crs(projection_records(layout, tail, tail_at))
     warn_of_crs(name, place)
     return cloud, place
@@ -195,7 +195,7 @@ def require_laspy() -> Any:
     return laspy
 
 
-def _tell(code: str, template: str, *options: str, **figures: Any) -> None:
+def _warn(code: str, template: str, *options: str, **figures: Any) -> None:
     warn(PointCloudWarning, code, template, *options, stacklevel=3, **figures)
 
 
@@ -228,7 +228,7 @@ def _read_all(
         if bbox is not None:
             points = _inside(name, layout, points, bbox)
         for note in layout.notes:
-            _tell("las_header", "{name}: {fact}", name=name, fact=note)
+            _warn("las_header", "{name}: {fact}", name=name, fact=note)
         tail, tail_at = tail_of(name, layout, stream)
     return layout, header, points, tail, tail_at
 
@@ -242,7 +242,7 @@ def tail_of(name: str, layout: LasLayout, stream: BinaryIO) -> tuple[bytes, int 
     stream.seek(start)
     tail, tail_at, note = las_block.tail_of(stream.read(), start, layout)
     if note:
-        _tell("las_header", "{name}: {fact}", name=name, fact=note)
+        _warn("las_header", "{name}: {fact}", name=name, fact=note)
     return tail, tail_at
 
 
@@ -363,7 +363,7 @@ def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> No
         slack = 1.5 * abs(layout.scales[k]) + 1e-9 * max(-low, high) + 5e-4 * (high - low)
         told = layout.low[k], layout.high[k]
         if not (abs(told[0] - low) <= slack and abs(told[1] - high) <= slack):
-            _tell(
+            _warn(
                 "header_extent",
                 "{name}: the header says that {axis} runs from {told[0]:.10g} to {told[1]:.10g}, "
                 "the points run from {found[0]:.10g} to {found[1]:.10g}; if that is no old "
@@ -429,7 +429,7 @@ def _aside(
             name=name,
             parts=" and ".join(parts),
         )
-    _tell(
+    _warn(
         "points_aside",
         "{name}: {n_aside} of {n_points} points are left out of the surface ({parts}); they are "
         f"carried along, {ways} let{'s' * (len(options) == 1)} them in",
@@ -600,11 +600,11 @@ def carried_fields(
     }
 
 
-def _tell_of_waveforms(name: str, layout: LasLayout) -> None:
+def _warn_of_waveforms(name: str, layout: LasLayout) -> None:
     if layout.point_format not in _WAVEFORM_FORMATS or layout.waveform_start:
         return
     where = "another file (.wdp)" if layout.has_outside_waveforms else "no place the header names"
-    _tell(
+    _warn(
         "waveforms",
         "{name}: the points refer to waveforms in {where}; their references are carried, the "
         "waveform samples themselves are not",

@@ -78,7 +78,7 @@ _CELLS = "cells"
 #: What the metadata say of steps whose filters follow from their collapses.
 _PLACES = "places"
 
-_NO_INPUT = "the pyramid is told by an input that the file does not hold."
+_NO_INPUT = "the pyramid is described by an input that the file does not hold."
 
 
 def pyramid_to_parts(

@@ -211,7 +211,7 @@ def _require_inside(file: SourceFile, rows: NDArray[np.int64], columns: NDArray[
     if not inside.all():
         raise InputFileError(
             f"{file.path}: {np.count_nonzero(~inside)} points or more lie outside of the bounds "
-            "that the header tells, by which tiles are cut; mend the header first (lasinfo "
+            "that the header states, by which tiles are cut; repair the header first (lasinfo "
             "-repair), or get the file again."
         )
 

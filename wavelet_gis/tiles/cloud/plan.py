@@ -256,7 +256,7 @@ def _extents(
             if not np.isfinite(told).all() or told[0] > told[1]:
                 raise InputFileError(
                     f"{path}: the header says that {'xy'[k]} runs from {told[0]:g} to {told[1]:g}; "
-                    "mend the header first (lasinfo -repair), tiles are cut by it."
+                    "repair the header first (lasinfo -repair), tiles are cut by it."
                 )
             # Many writers round the bounds, as far as the readers of clouds let them.
             slack = 1.5 * abs(first.scales[k]) + 5e-4 * (told[1] - told[0])

@@ -256,10 +256,26 @@ def on_tile(mesh: TileMesh, tile: Tile, zoom: int) -> OnTile:
     faces = faces[
         (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     ]
+    faces = _without_folded_pairs(faces)
+    used, faces = np.unique(faces, return_inverse=True)
+    kept, faces = kept[used], faces.reshape(-1, 3)
     u, v = places[kept].T.copy()
     faces = without_slivers(u, v, faces, _LEAST_ALTITUDE)
     n_folded = _unfold(u, v, faces)
     return OnTile(u, v, mesh.height[kept], faces, n_folded)
+
+
+def _without_folded_pairs(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the faces without those that lie on one another, one of them upside down.
+
+    They arise where two vertices on both sides of an edge fall together. What they leave are the
+    faces around them, which then meet.
+    """
+    # Counter-clockwise from the smallest vertex, so that a face has one form, and its back another.
+    turned = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    _, own = np.unique(np.concatenate([turned, turned[:, [0, 2, 1]]]), axis=0, return_inverse=True)
+    forward, backward = np.split(own.ravel(), 2)
+    return faces[~np.isin(forward, backward)]
 
 
 def errors_on(
@@ -306,6 +322,8 @@ def without_slivers(
             if is_touched[other]:
                 continue
             d = faces[other, (corner + 2) % 3]
+            if d == c:  # the same face from below
+                continue
             turned = np.array([[a, d, c], [d, b, c]])
             if _altitudes(x, y, turned)[0].min() > min(altitude[face], altitude[other]):
                 faces[face], faces[other] = turned
