@@ -46,7 +46,7 @@ WHY_TOLD = {
     "points_aside": "noise and withheld points are no ground; they come back all the same",
     "points_missing": "the file ends before the points that its header announces",
     "raster_read_with_complaints": "what GDAL found odd may matter",
-    "vertical_unit_assumed": "nothing tells the unit of z",
+    "vertical_unit_assumed": "nothing gives the unit of z",
     "vertical_unit_converted": "heights and lengths must have one unit while working",
     "waveforms": "the waveforms are in another file, which is not copied",
 }
@@ -55,7 +55,7 @@ WHY_TOLD = {
 WHY_REFUSED = (
     ("every cell of the raster is nodata", "there is no elevation"),
     (
-        "choose the one with the elevations",
+        "choose the elevation band",
         "which band holds elevations is not for a program to guess",
     ),
     ("the raster cannot be read", "half of a raster is no result"),
