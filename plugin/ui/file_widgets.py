@@ -140,7 +140,7 @@ class PyramidChoice(FileChoice):
 
 
 def _cloud_choice() -> FileChoice:
-    """Return a list of the project's point cloud layers; none is chosen before the user does."""
+    """Return a list of the project's point cloud layers, of which the first is chosen."""
     project = QgsProject.instance()
     layers = [] if project is None else list(project.mapLayers().values())
     offers = []

@@ -43,7 +43,7 @@ def known_pyramids(project: QgsProject | None) -> list[KnownPyramid]:
 
     Files that are gone, or hold no pyramid any more, are left out.
     """
-    paths = list(reversed(_made))
+    paths = list(_made)[::-1]  # a copy at once: algorithms write to it meanwhile
     if project is not None:
         sources = [layer.source().split("|")[0] for layer in project.mapLayers().values()]
         paths += sorted({path for path in sources if path.lower().endswith(".gpkg")})

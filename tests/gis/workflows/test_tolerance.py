@@ -209,7 +209,7 @@ class TestRefusals:
                 wg.extract(analysis, **options)
 
     def test_zones_beside_another_rule_are_named(self, terrain, zones):
-        with pytest.raises(OptionError, match="zones are of max_error"):
+        with pytest.raises(OptionError, match="zones go with max_error only"):
             wg.simplify(terrain, vertices=50, zones=zones)
 
     def test_a_negative_number_in_a_zone_is_that_of_the_field(self, terrain, tmp_path):
