@@ -12,13 +12,20 @@ The property ``limits`` of each case tells how many.
 
 import contextlib
 import os
+import pkgutil
 import shutil
 import subprocess
 
+import numpy as np
+import pyogrio
 import pytest
+import rasterio
+import shapely
 from gis.samples import hills, write_las, write_tif
 
+from wavelet_gis.cli import commands
 from wavelet_gis.cli.main import main
+from wavelet_gis.io.formats import MESH_SUFFIXES
 
 resource = pytest.importorskip("resource", reason="limits of POSIX")
 
@@ -27,15 +34,15 @@ FIRST = 4_000  # what pytest captures goes into a file, too
 #: Limits tried for one output, spread over its size; set the variable to try each.
 MOST = int(os.environ.get("FULL_DISK_LIMITS", "2"))
 
+MESHES = [".gpkg", *MESH_SUFFIXES]
+
+#: Command, input, output, and options; what begins with @ stands before the output.
 JOBS = [
     *[("reconstruct", "dem", f"x{s}") for s in (".tif", ".img", ".asc")],
     *[("reconstruct", "cloud", f"x{s}") for s in (".las", ".laz")],
     ("extract", "dem", "x.tif"),
     ("extract", "dem", "x.tif", "--cog"),
-    *[
-        ("extract", "dem", f"x{s}", "--level", "1")
-        for s in (".gpkg", ".ply", ".2dm", ".obj", ".stl", ".glb", ".xml", ".dxf")
-    ],
+    *[("extract", "dem", f"x{s}", "--level", "1") for s in MESHES],
     *[("extract", "cloud", f"x{s}", "--level", "1") for s in (".tif", ".gpkg", ".ply")],
     *[("details", "dem", f"x{s}") for s in (".tif", ".gpkg", ".png", ".svg", ".pdf")],
     *[("details", "dem", f"x{s}", "--what", "shape") for s in (".tif", ".gpkg")],
@@ -43,13 +50,22 @@ JOBS = [
     *[("filter", "dem", f"x{s}", "--gain", "0=0") for s in (".tif", ".gpkg")],
     *[("filter", "cloud", f"x{s}", "--gain", "0=0") for s in (".las", ".laz", ".gpkg")],
     ("report", "dem", "x.html"),
+    ("view", "dem", "x.html"),
+    *[("profile", "dem", f"x{s}", "@line") for s in (".csv", ".gpkg", ".html", ".svg")],
+    ("contours", "dem", "x.gpkg"),
+    ("difference", "dem", "x.tif"),
     ("analyse", "input", "x.gpkg", "--levels", "1"),
     ("analyse", "points", "x.gpkg", "--levels", "1"),
-    *[
-        ("simplify", "input", f"x{s}", "--vertices", "3000")
-        for s in (".tif", ".gpkg", ".ply", ".2dm", ".obj", ".stl", ".glb", ".xml", ".dxf")
-    ],
+    *[("simplify", "input", f"x{s}", "--vertices", "3000") for s in (".tif", *MESHES)],
 ]
+
+#: Commands whose output is a folder, which tests of their own fill up, or none.
+WITHOUT_FILE = {"tile", "terrain", "info"}
+
+
+def test_every_command_and_format_is_tried():
+    names = {row.name for row in pkgutil.iter_modules(commands.__path__) if row.name[0] != "_"}
+    assert {command for command, *_ in JOBS} | WITHOUT_FILE == names
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +76,15 @@ def sources(tmp_path_factory):
     for source in (dem, cloud):
         pyramid = str(source.with_suffix(".gpkg"))
         assert main(["analyse", str(source), pyramid, "--levels", "2", "--quiet"]) == 0
+    line = folder / "line.geojson"
+    with rasterio.open(dem) as dataset:
+        crs, (west, south, east, north) = dataset.crs, dataset.bounds
+    ends = shapely.linestrings([[west + 1, south + 1], [east - 1, north - 1]])
+    pyogrio.raw.write(
+        line, np.array([shapely.to_wkb(ends)]), [], [], geometry_type="LineString", crs=crs.to_wkt()
+    )
     return {
+        "line": line,
         "input": dem,
         "points": cloud,
         "dem": dem.with_suffix(".gpkg"),
@@ -86,7 +110,10 @@ def test_a_file_that_does_not_fit(job, sources, tmp_path, capfd, record_property
     if package:
         pytest.importorskip(package)
     output = tmp_path / name
-    line = [command, str(sources[source]), str(output), *options, "--overwrite", "--quiet"]
+    before = [str(sources[option[1:]]) for option in options if option.startswith("@")]
+    options = [option for option in options if not option.startswith("@")]
+    inputs = [str(sources[source]), *before]
+    line = [command, *inputs, str(output), *options, "--overwrite", "--quiet"]
     assert main(line) == 0
     old = {path: path.read_bytes() for path in tmp_path.iterdir()}
     size = len(old[output])
