@@ -90,7 +90,7 @@ def test_vertices_without_faces_have_no_shape():
 def test_a_shape_has_six_names_and_no_others():
     shape = surface_shape(synthetic.plane())
     assert all(len(shape.named(name)) == 180 for name in SHAPE_NAMES)
-    with pytest.raises(OptionError, match="no shape 'roughness'; choose of slope"):
+    with pytest.raises(OptionError, match="no shape 'roughness'; choose one of slope"):
         shape.named("roughness")
 
 

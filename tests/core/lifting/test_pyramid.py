@@ -31,7 +31,7 @@ def parts_of(pyramid):
     return {
         field.name: getattr(pyramid, field.name)
         for field in fields
-        if field.name not in ("part", "measured", "told")
+        if field.name not in ("part", "measured", "kept_record")
     }
 
 

@@ -91,7 +91,7 @@ def test_a_file_that_is_called_like_a_sub_dataset_is_itself(tmp_path, monkeypatc
 
 def test_names_that_cannot_be_are_refused_at_once(tmp_path):
     for name in ("x" * 300 + ".tif", "a\0.tif"):
-        with pytest.raises(OutputFileError, match="no such name"):
+        with pytest.raises(OutputFileError, match="the system refuses this name"):
             check_output(tmp_path / name)
     deep = tmp_path
     for _ in range(6):

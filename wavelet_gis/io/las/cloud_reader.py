@@ -20,6 +20,7 @@ from wavelet_gis.errors import CrsWarning, InputFileError, PointCloudWarning
 from wavelet_gis.io.las import block as las_block
 from wavelet_gis.io.las import laz_decoder
 from wavelet_gis.io.las.copc import Chunk, chunks_within, is_copc
+from wavelet_gis.io.las.dimensions import carried_fields, lifted_attributes, select
 from wavelet_gis.io.las.layout import (
     LARGEST_COORDINATE,
     LasLayout,
@@ -27,8 +28,8 @@ from wavelet_gis.io.las.layout import (
     read_layout,
     records_of,
 )
-from wavelet_gis.model.attributes.ground import GROUND_CLASS, height_above_ground
-from wavelet_gis.model.points.cloud import PointAttribute, PointCloud
+from wavelet_gis.model.attributes.ground import GROUND_CLASS
+from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.notes import warn
 
 if TYPE_CHECKING:
@@ -36,14 +37,10 @@ if TYPE_CHECKING:
     from laspy.point.record import PackedPointRecord
 
 __all__ = [
-    "ALIASES",
-    "HEIGHT_ABOVE_GROUND",
     "NOISE_CLASSES",
-    "carried_fields",
     "decoding",
     "laspy_header",
     "laz_job",
-    "lifted_attributes",
     "masks_aside",
     "projection_records",
     "read_cloud",
@@ -51,16 +48,6 @@ __all__ = [
     "tail_of",
     "warn_of_crs",
 ]
-
-#: Name of the attribute that is computed rather than read.
-HEIGHT_ABOVE_GROUND = "hag"
-
-#: What people call dimensions, beside the names that laspy gives them.
-ALIASES: dict[str, tuple[str, ...]] = {
-    "class": ("classification",),
-    "rgb": ("red", "green", "blue"),
-    "returns": ("return_number", "number_of_returns"),
-}
 
 #: ASPRS classes of points that hit nothing on the ground: low and high noise.
 NOISE_CLASSES = (7, 18)
@@ -154,12 +141,12 @@ def read_cloud(
     aside = _aside(name, points, chosen, classes, keep_noise, keep_withheld)
     integers = np.empty((np.count_nonzero(chosen) if chosen is not None else len(array), 3), "i4")
     for k, axis in enumerate("XYZ"):
-        integers[:, k] = _select(array[axis], chosen)
+        integers[:, k] = select(array[axis], chosen)
     cloud = PointCloud(
         integers=integers,
         scales=np.array(layout.scales, dtype=np.float64),
         offsets=np.array(layout.offsets, dtype=np.float64),
-        attributes=tuple(replace(a, values=_select(a.values, chosen)) for a in lifted),
+        attributes=tuple(replace(a, values=select(a.values, chosen)) for a in lifted),
         carried=carried_fields(points, lifted, chosen) if carry else {},
         header=np.frombuffer(layout.block, np.uint8),
         evlrs=np.frombuffer(tail, np.uint8),
@@ -400,7 +387,7 @@ def _aside(
 ) -> NDArray[np.bool_] | None:
     """Return which of the chosen points are carried only, and say how many they are."""
     is_withheld, is_noise = (
-        _select(mask, chosen) for mask in masks_aside(points, classes, keep_noise, keep_withheld)
+        select(mask, chosen) for mask in masks_aside(points, classes, keep_noise, keep_withheld)
     )
     aside = is_noise | is_withheld
     n_aside = int(np.count_nonzero(aside))
@@ -464,96 +451,6 @@ def masks_aside(
     return is_withheld, np.isin(of_point, noise_classes)
 
 
-def lifted_attributes(
-    name: str, wanted: Sequence[str], points: PackedPointRecord, header: LasHeader
-) -> list[PointAttribute]:
-    """Return the attributes that are lifted, of all points.
-
-    Parameters
-    ----------
-    name : str
-        Of the file, for messages.
-    wanted : sequence of str
-        See `read_cloud`.
-    points : PackedPointRecord
-    header : LasHeader
-    """
-    lifted = [
-        attribute
-        for one in dict.fromkeys(wanted)
-        for attribute in _attributes(name, one, points, header)
-    ]
-    _check_names(name, lifted)
-    return lifted
-
-
-def _attributes(
-    name: str, wanted: str, points: PackedPointRecord, header: LasHeader
-) -> list[PointAttribute]:
-    available = list(points.point_format.dimension_names)
-    if wanted not in available and wanted in ALIASES:
-        return [
-            attribute
-            for part in ALIASES[wanted]
-            for attribute in _attributes(name, part, points, header)
-        ]
-    if wanted not in available and wanted == HEIGHT_ABOVE_GROUND:
-        return [_height_attribute(points, header)]
-    matches = [d for d in available if d == wanted] or [
-        d for d in available if d.lower() == wanted.lower()
-    ]
-    if not matches or matches[0] in ("X", "Y", "Z"):
-        choices = ", ".join(d for d in available if d not in ("X", "Y", "Z"))
-        raise InputFileError(
-            f"{name}: there is no dimension {wanted!r}; the file has {choices} (and hag can be "
-            "computed)."
-        )
-    return _dimension(matches[0], points)
-
-
-def _dimension(dimension: str, points: PackedPointRecord) -> list[PointAttribute]:
-    info = points.point_format.dimension_by_name(dimension)
-    packed = dimension not in (points.array.dtype.names or ())
-    values = np.array(points[dimension]) if packed else points.array[dimension]
-    n_components = 1 if values.ndim == 1 else values.shape[1]
-    scales = np.ones(n_components) if info.scales is None else np.asarray(info.scales)
-    offsets = np.zeros(n_components) if info.offsets is None else np.asarray(info.offsets)
-    if n_components == 1:
-        column = values if values.ndim == 1 else values[:, 0]
-        component = None if values.ndim == 1 else 0
-        return [
-            PointAttribute(
-                dimension, dimension, column, component, float(scales[0]), float(offsets[0])
-            )
-        ]
-    return [
-        PointAttribute(
-            f"{dimension}_{k}", dimension, values[:, k], k, float(scales[k]), float(offsets[k])
-        )
-        for k in range(n_components)
-    ]
-
-
-def _height_attribute(points: PackedPointRecord, header: LasHeader) -> PointAttribute:
-    integers = np.column_stack([points.array[axis] for axis in "XYZ"])
-    coordinates = integers * np.asarray(header.scales) + np.asarray(header.offsets)
-    is_ground = (np.array(points["classification"]) == GROUND_CLASS) & ~np.array(
-        points["withheld"]
-    ).astype(bool)
-    heights = height_above_ground(coordinates, is_ground)
-    return PointAttribute(HEIGHT_ABOVE_GROUND, HEIGHT_ABOVE_GROUND, heights)
-
-
-def _check_names(name: str, lifted: list[PointAttribute]) -> None:
-    seen: set[str] = set()
-    for attribute in lifted:
-        if attribute.name in seen:
-            raise InputFileError(
-                f"{name}: attribute {attribute.name!r} is requested twice; name it once."
-            )
-        seen.add(attribute.name)
-
-
 def _chosen(
     name: str, points: PackedPointRecord, classes: Sequence[int] | None
 ) -> NDArray[np.bool_] | None:
@@ -575,29 +472,6 @@ def _ground(points: PackedPointRecord) -> NDArray[np.bool_] | None:
     is_last = np.array(points["return_number"]) >= np.array(points["number_of_returns"])
     is_ground: NDArray[np.bool_] = is_last & (np.array(points["classification"]) == GROUND_CLASS)
     return is_ground if np.count_nonzero(is_ground) >= 3 else None
-
-
-def _select(values: NDArray[Any], chosen: NDArray[np.bool_] | None) -> NDArray[Any]:
-    return np.ascontiguousarray(values if chosen is None else values[chosen])
-
-
-def carried_fields(
-    points: PackedPointRecord,
-    lifted: list[PointAttribute],
-    chosen: NDArray[np.bool_] | None = None,
-) -> dict[str, NDArray[Any]]:
-    """Return the fields of the records that the pyramid does not hold.
-
-    A lifted sub-field (the class of formats 0 to 5 shares its byte with flags) stays in its
-    byte, and so do the other components of an array.
-    """
-    whole = {a.dimension for a in lifted if a.component is None}
-    names = points.array.dtype.names or ()
-    return {
-        name: _select(points.array[name], chosen)
-        for name in names
-        if name not in ("X", "Y", "Z") and name not in whole
-    }
 
 
 def _warn_of_waveforms(name: str, layout: LasLayout) -> None:

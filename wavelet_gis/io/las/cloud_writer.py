@@ -14,7 +14,8 @@ from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.las import block as las_block
 from wavelet_gis.io.las import laz_decoder
-from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, laspy_header, require_laspy
+from wavelet_gis.io.las.cloud_reader import laspy_header, require_laspy
+from wavelet_gis.io.las.dimensions import HEIGHT_ABOVE_GROUND
 from wavelet_gis.io.las.layout import (
     RECORD_LENGTHS,
     LasLayout,

@@ -9,7 +9,8 @@ from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
-from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, read_cloud
+from wavelet_gis.io.las.cloud_reader import read_cloud
+from wavelet_gis.io.las.dimensions import HEIGHT_ABOVE_GROUND
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.points.merged import merged_cloud
 from wavelet_gis.notes import note

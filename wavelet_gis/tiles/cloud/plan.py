@@ -15,7 +15,8 @@ from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
-from wavelet_gis.io.las.cloud_reader import HEIGHT_ABOVE_GROUND, laspy_header, warn_of_crs
+from wavelet_gis.io.las.cloud_reader import laspy_header, warn_of_crs
+from wavelet_gis.io.las.dimensions import HEIGHT_ABOVE_GROUND
 from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.points.aside import DUPLICATE_RULES
 from wavelet_gis.model.points.cloud import PointCloud

@@ -12,13 +12,8 @@ from numpy.typing import NDArray
 
 from wavelet_core import MeshError, TriangleMesh
 from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
-from wavelet_gis.io.las.cloud_reader import (
-    carried_fields,
-    laspy_header,
-    lifted_attributes,
-    masks_aside,
-    require_laspy,
-)
+from wavelet_gis.io.las.cloud_reader import laspy_header, masks_aside, require_laspy
+from wavelet_gis.io.las.dimensions import carried_fields, lifted_attributes
 from wavelet_gis.io.las.layout import SCALING, parse_layout
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.points.cloud import PointCloud
