@@ -61,7 +61,8 @@ def keep():
 
 
 def picture_of(widget, width, height):
-    """Return what a widget shows."""
+    """Return what a widget shows; afterwards it is gone, and no end of a layer concerns it."""
+    from qgis.PyQt.QtCore import QCoreApplication, QEvent
     from qgis.PyQt.QtWidgets import QApplication
 
     widget.resize(width, height)
@@ -70,6 +71,8 @@ def picture_of(widget, width, height):
         QApplication.processEvents()
     image = widget.grab().toImage()
     widget.close()
+    widget.deleteLater()
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     return image
 
 
