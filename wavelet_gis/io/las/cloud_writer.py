@@ -235,7 +235,7 @@ def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np
     if not layout.is_compressed:
         with open(path, "rb") as stream:
             stream.seek(layout.points_start)
-            n_bytes = _BATCH * content.shape[1]
+            n_bytes = min(_BATCH, len(content)) * content.shape[1]  # records may have 64 kB
             while n_read < len(content) and (batch := stream.read(n_bytes)):
                 take(memoryview(batch[: len(batch) // content.shape[1] * content.shape[1]]))
                 if len(batch) < n_bytes:
@@ -251,7 +251,7 @@ def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np
         n_points=len(content),
     )
     try:
-        laz_decoder.decoded_in_batches(job, _BATCH, take)
+        laz_decoder.decoded_in_batches(job, min(_BATCH, max(len(content), 1)), take)
     except laz_decoder.DecodeError as error:
         raise _not_compressible(path, layout.point_format, error) from error
     if n_other:
