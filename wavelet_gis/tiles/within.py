@@ -105,7 +105,7 @@ def _errors_within(
     from wavelet_gis.io.pyramid.pyramid_file import read_input
 
     found = [np.empty(0)]
-    for tile in _tiles_of(index, piece):
+    for tile in index.plan.tiles(piece):
         if index.records.get(tile, {}).get("status") != "whole" or not area.has_piece(tile):
             continue
         points = read_input(index.path(tile)).pyramid.mesh(0).vertices
@@ -114,11 +114,3 @@ def _errors_within(
             return None
         found.append(errors)
     return np.concatenate(found)
-
-
-def _tiles_of(index: TileIndex, piece: Piece) -> Iterator[Piece]:
-    if piece.stage == 0:
-        yield piece
-        return
-    for part in index.plan.parts(piece):
-        yield from _tiles_of(index, part)
