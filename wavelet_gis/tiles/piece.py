@@ -284,7 +284,7 @@ def _tile(plan: TilePlan, piece: Piece) -> GeoPyramid | None:
         plan.local_frame,
         plan.vertical_unit,
     )
-    return analyse(terrain, locked=locked, **plan.options_of(mesh.n_vertices)).geo
+    return analyse(terrain, locked=locked, **plan.options_of(piece, mesh.n_vertices)).geo
 
 
 def handed_on(checksum: str, level: int) -> str:
@@ -324,7 +324,7 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
         locked=locked,
         integrals=whole.integrals,
         points=points if plan.is_error_guided else None,
-        **plan.options_of(len(whole.cells)),
+        **plan.options_of(piece, len(whole.cells)),
     )
     geo = GeoPyramid(
         pyramid=pyramid,

@@ -238,10 +238,15 @@ class TilePlan:
             for column in range(2 * piece.column, min(2 * piece.column + 2, n_columns))
         ]
 
-    def options_of(self, n_vertices: int) -> dict[str, Any]:
-        """Return the options by which a piece of so many vertices is analysed."""
+    def options_of(self, piece: Piece, n_vertices: int) -> dict[str, Any]:
+        """Return the options by which a piece of so many vertices is analysed.
+
+        The only piece of a plan is a pyramid like any other.
+        """
+        if self.n_stages == 1:
+            return dict(self.wavelets)
         options = {
-            "levels": self.levels,
+            "levels": LEVELS if piece.stage == self.n_stages - 1 else self.levels,
             "target_vertices": max(int(n_vertices * _COARSEST_SHARE), 3),
             **self.wavelets,
         }

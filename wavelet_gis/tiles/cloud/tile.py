@@ -200,7 +200,7 @@ def tile_pyramid(plan: TilePlan, piece: Piece, tile: CloudTile) -> GeoPyramid | 
         frame,
         plan.vertical_unit,
     )
-    return analyse(terrain, locked=locked, **plan.options_of(len(vertices))).geo
+    return analyse(terrain, locked=locked, **plan.options_of(piece, len(vertices))).geo
 
 
 def tile_faces(
