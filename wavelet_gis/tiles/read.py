@@ -121,16 +121,14 @@ def extract_region(
     whole = join(plan, meshes, [np.ones(mesh.n_vertices) for mesh in meshes])
     mesh, cells = whole.mesh, whole.cells
     if area.shape is not None:
-        used, faces = np.unique(mesh.faces[area.faces_of(mesh)], return_inverse=True)
+        used, faces = area.part_of(mesh)
         if not len(used):
             raise InputFileError(
                 "{path}: there are no triangles in the region; give another {0}.",
                 area.option,
                 path=found.folder,
             )
-        mesh = TriangleMesh(
-            mesh.vertices[used], faces.reshape(-1, 3), mesh.attributes[used], whole.names
-        )
+        mesh = TriangleMesh(mesh.vertices[used], faces, mesh.attributes[used], whole.names)
         cells = cells[used]
     geo = replace(geos[0], origin=MeshOrigin(), errors=None, notes=())
     return Region(Surface(geo, mesh, cells, finest, errors), tuple(pieces))

@@ -17,9 +17,11 @@ import wavelet_gis as wg
 from wavelet_core.errors import MissingDependencyError, OptionError
 from wavelet_gis.errors import InputFileError, OutputFileError, TerrainWarning
 from wavelet_gis.io.pyramid.pyramid_file import read_levels, read_pyramid
+from wavelet_gis.io.raster import write_dem
 from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.piece import cells_of, join
 from wavelet_gis.tiles.plan import Piece, TilePlan
+from wavelet_gis.tiles.read import terrain_of_region
 
 SIZE = 32
 
@@ -317,6 +319,48 @@ def test_one_tile_is_the_plain_pyramid(tmp_path):
     plain = wg.analyse(wg.open(path))
     assert tiled.index.n_levels == plain.n_levels
     assert wg.extract_region(tiled.index).surface.mesh == plain.geo.pyramid.mesh(0)
+
+
+@pytest.fixture(scope="module")
+def islands(tmp_path_factory):
+    """Tiles that have cells but no three side by side: single ones, and a strip one cell wide."""
+    values = np.full((60, 80), -9999.0)
+    values[:32, :32] = hills(32, 32)
+    values[40, 50], values[50, 10], values[45, 52:60] = 300.0, 222.0, np.arange(8) + 290.0
+    path = write_tif(tmp_path_factory.mktemp("islands") / "d.tif", values, nodata=-9999.0)
+    return path, wg.tile_rasters(path, path.parent / "t", tile=20, levels=3)
+
+
+def test_single_cells_come_back_from_tiles_that_have_nothing_else(islands, tmp_path):
+    """They came back as nodata, called "the original", since such tiles counted as empty."""
+    path, tiled = islands
+    write_dem(
+        tmp_path / "back.tif",
+        wg.restored_raster(tiled.index),
+        tiled.index.plan.coordinate_system.wkt,
+    )
+    assert_same_raster(path, tmp_path / "back.tif")
+
+
+def test_single_cells_are_vertices_of_every_level_and_region(islands):
+    _, tiled = islands
+    places = {(500000 + 10 * (c + 0.5), 5100000 - 10 * (r + 0.5)) for r, c in ((40, 50), (50, 10))}
+    for rule in ({"level": 0}, {"level": tiled.index.n_levels}, {"max_error": 0.5}):
+        mesh = wg.extract_region(tiled.index, **rule).surface.file_mesh
+        assert places <= set(map(tuple, mesh.vertices[:, :2].tolist()))
+    box = (500090.0, 5099480.0, 500120.0, 5099510.0)
+    part = wg.extract_region(tiled.index, level=2, bbox=box).surface.file_mesh
+    assert part.vertices.tolist() == [[500105.0, 5099495.0, 222.0]]
+
+
+def test_a_set_of_single_cells_is_no_terrain_for_a_globe(tmp_path):
+    """It ended in a division by zero."""
+    values = np.full((30, 30), -9999.0)
+    values[::7, ::9] = 300.0
+    path = write_tif(tmp_path / "d.tif", values, nodata=-9999.0)
+    tiled = wg.tile_rasters(path, tmp_path / "t", tile=16)
+    with pytest.raises(InputFileError, match="there is no triangle"):
+        wg.terrain_tiles(terrain_of_region(tiled.index), tmp_path / "out")
 
 
 def test_refusals(dem, tmp_path):
