@@ -72,6 +72,13 @@ def add_rule_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
 
 def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
     """Declare the design of the wavelets and the vertical unit."""
+    _add_choices(algorithm)
+    _add_numbers(algorithm)
+    add_vertical_unit(algorithm)
+
+
+def _add_choices(algorithm: TerrainWaveletsAlgorithm) -> None:
+    """Declare what is chosen from the tables of the core."""
     for name, table, description, text in (
         (
             "PARTITION",
@@ -131,6 +138,9 @@ def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
     ):
         parameter, rows = table_choice(name, description, core_table(table))
         algorithm.add(parameter, text + rows, advanced=True)
+
+
+def _add_numbers(algorithm: TerrainWaveletsAlgorithm) -> None:
     algorithm.add(
         QgsProcessingParameterNumber(
             "BENDING_WEIGHT",
@@ -176,7 +186,6 @@ def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
         ),
         advanced=True,
     )
-    add_vertical_unit(algorithm)
 
 
 def add_vertical_unit(algorithm: TerrainWaveletsAlgorithm) -> None:
