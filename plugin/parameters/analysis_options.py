@@ -182,7 +182,7 @@ def _add_numbers(algorithm: TerrainWaveletsAlgorithm) -> None:
             "How far the outline, holes included, may move in plan, in the unit of x and y (metres "
             "for a geographic CRS), with the <i>surface</i> partition. Empty for 0: vertices of "
             "the outline are removed only where it runs straight, which limits how coarse a level "
-            "can become. The log tells how much the area changes."
+            "can become. The log says how much the area changes."
         ),
         advanced=True,
     )

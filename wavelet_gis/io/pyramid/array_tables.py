@@ -287,7 +287,7 @@ class WrittenArrays(StoredArrays):
         As for `StoredArrays`.
     originals : mapping of str to array
         What was written.
-    tell : callable
+    verified : callable
         Called with the bytes of each array that is verified.
     """
 
@@ -298,15 +298,15 @@ class WrittenArrays(StoredArrays):
         entries: dict[str, Entry],
         file_bytes: int,
         originals: Mapping[str, NDArray[Any]],
-        tell: Callable[[int], None],
+        verified: Callable[[int], None],
     ) -> None:
         super().__init__(connection, pool, entries, file_bytes)
         self._originals = originals
-        self._tell = tell
+        self._verified = verified
 
     def _read(self, name: str, entry: Entry) -> NDArray[Any]:
         self._checked_size(entry)
         blocks = decode_blocks(entry.header, self._chunks(entry.array_id), self._pool)
         self._compare(entry, array_checksum(entry.header, blocks))
-        self._tell(entry.header.n_bytes)
+        self._verified(entry.header.n_bytes)
         return self._originals[name].astype(entry.header.dtype, copy=False)

@@ -24,7 +24,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from wavelet_core import Cancelled, Progress, PyramidError, WaveletError
-from wavelet_core.progress import report
+from wavelet_core.progress import part_of, report
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.geopackage import (
     PAGE_BYTES,
@@ -60,7 +60,6 @@ from wavelet_gis.io.pyramid.pyramid_parts import (
 from wavelet_gis.io.pyramid.source_parts import check_source
 from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.progress import part_of
 
 __all__ = [
     "FORMATS_READ",
@@ -230,7 +229,7 @@ def _read_back(
     """Have the reader take a file that was just written, without room for its arrays."""
     done = 0
 
-    def tell(n_bytes: int) -> None:
+    def verified(n_bytes: int) -> None:
         nonlocal done
         done += n_bytes
         share = min(done / total, 1.0)
@@ -242,7 +241,7 @@ def _read_back(
             size = os.path.getsize(path)
             pyramid_from_parts(
                 contents,
-                WrittenArrays(connection, pool, contents.entries, size, arrays, tell),
+                WrittenArrays(connection, pool, contents.entries, size, arrays, verified),
                 geo.pyramid,
             )
     except Cancelled:

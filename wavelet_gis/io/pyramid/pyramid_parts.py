@@ -1,6 +1,6 @@
 """A pyramid as metadata and arrays, and back.
 
-A pyramid that follows from its input is told by that and by few symbols
+A pyramid that follows from its input is kept as that and few symbols
 (`wavelet_gis.io.pyramid.record_parts`), any other by the arrays of its steps.
 """
 
@@ -92,7 +92,7 @@ def pyramid_to_parts(
     mesh = geo.origin.kept_mesh(geo.frame, pyramid.faces)
     record = None if mesh is None else record_of(pyramid, mesh, progress)
     if record is None:
-        told = None
+        recorded = None
         arrays.update(placed_arrays(pyramid) or listed_arrays(pyramid))
         has_cells = _is_plan_of_cells(pyramid, geo.origin, geo.frame)
         if has_cells:
@@ -100,11 +100,11 @@ def pyramid_to_parts(
         if pyramid.part is not None:
             arrays["integrals"] = pyramid.part.integrals
     else:
-        told, record_arrays = record_to_parts(record)
+        recorded, record_arrays = record_to_parts(record)
         arrays.update(record_arrays)
         if geo.origin.points is not None:
             of_faces, face_arrays = faces_to_parts(geo.origin.points.kept_places, pyramid.faces)
-            told.update(of_faces)
+            recorded.update(of_faces)
             arrays.update(face_arrays)
     if pyramid.locked is not None:
         arrays["locked"] = pyramid.locked
@@ -140,8 +140,8 @@ def pyramid_to_parts(
         metadata["pyramid"]["steps"] = _PLACES
     if has_cells:
         metadata["pyramid"]["plan"] = _CELLS
-    if told is not None:
-        metadata["record"] = told
+    if recorded is not None:
+        metadata["record"] = recorded
     if geo.notes:
         metadata["notes"] = [note.to_dict() for note in geo.notes]
     return metadata, arrays
@@ -427,7 +427,7 @@ def _placed_steps(
     if not is_sound:
         raise PyramidError("a finest level that is no surface; the file is damaged.")
     _require_surface(TriangleMesh(np.insert(horizontal, 2, 0.0, axis=1), faces))
-    told = [
+    moves = [
         (
             arrays.get(_name_of(level, "odd"), "<i4", 1),
             arrays.get(_name_of(level, "places"), "|u1", 1),
@@ -436,7 +436,7 @@ def _placed_steps(
     ]
     mask = _mask(locked, len(horizontal))
     with np.errstate(all="ignore"):
-        collapses = list(steps_at_places(horizontal, faces, mask, tolerance, told[::-1]))
+        collapses = list(steps_at_places(horizontal, faces, mask, tolerance, moves[::-1]))
     return [
         Step(*collapse._replace(details=arrays.get(_name_of(level, "details"), "<f8", 2)))
         for level, collapse in enumerate(reversed(collapses))
@@ -457,8 +457,8 @@ def _recorded(
         faces = written.faces
         arrays.all_named("faces")  # verified
     elif origin.points is not None:
-        told, places = contents.metadata.fields("record"), origin.points.kept_places
-        faces = faces_from_parts(told, arrays, places)
+        fields, places = contents.metadata.fields("record"), origin.points.kept_places
+        faces = faces_from_parts(fields, arrays, places)
     mesh = origin.kept_mesh(frame, faces)
     if mesh is None:
         raise PyramidError(_NO_INPUT)
@@ -512,7 +512,7 @@ def _locked_from(described: Fields, arrays: StoredArrays) -> NDArray[np.bool_] |
 
 
 def _stop_from(described: Fields) -> StopRecord | None:
-    """Return why the analysis ended; files of before do not tell."""
+    """Return why the analysis ended; files of before do not say."""
     if described.get("stop") is None:
         return None
     stored = described.fields("stop")

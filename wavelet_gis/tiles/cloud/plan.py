@@ -274,21 +274,22 @@ def _ends(
 def _extents(
     paths: Sequence[str], heads: Sequence[CloudHead]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the lowest and highest stored x and y of each file, as its header tells."""
+    """Return the lowest and highest stored x and y of each file, as its header says."""
     first = heads[0].layout
     lows, highs = [], []
     for path, head in zip(paths, heads, strict=True):
         ends = []
         for k in range(2):
-            told = np.array([head.layout.low[k], head.layout.high[k]])
-            if not np.isfinite(told).all() or told[0] > told[1]:
+            claimed = np.array([head.layout.low[k], head.layout.high[k]])
+            if not np.isfinite(claimed).all() or claimed[0] > claimed[1]:
                 raise InputFileError(
-                    f"{path}: the header says that {'xy'[k]} runs from {told[0]:g} to {told[1]:g}; "
-                    "repair the header first (lasinfo -repair), tiles are cut by it."
+                    f"{path}: the header says that {'xy'[k]} runs from {claimed[0]:g} to "
+                    f"{claimed[1]:g}; repair the header first (lasinfo -repair), tiles are "
+                    "cut by it."
                 )
             # Many writers round the bounds, as far as the readers of clouds let them.
-            slack = 1.5 * abs(first.scales[k]) + 5e-4 * (told[1] - told[0])
-            widened = np.array([told[0] - slack, told[1] + slack])
+            slack = 1.5 * abs(first.scales[k]) + 5e-4 * (claimed[1] - claimed[0])
+            widened = np.array([claimed[0] - slack, claimed[1] + slack])
             stored = (widened - first.offsets[k]) / first.scales[k]
             ends.append((np.floor(stored.min()), np.ceil(stored.max())))
         lows.append([low for low, _ in ends])
