@@ -15,7 +15,7 @@ from wavelet_core import OptionError, Progress
 from wavelet_core.progress import report
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.crs.projection import projected
-from wavelet_gis.errors import CrsError, TerrainWarning
+from wavelet_gis.errors import CrsError, InputFileError, TerrainWarning
 from wavelet_gis.io.atomic import new_folder
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.terrain import Terrain
@@ -173,6 +173,8 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
 
     Raises
     ------
+    InputFileError
+        Without a triangle.
     CrsError
         Without a CRS that gives the place on earth, or where that is on both sides of 180 degrees.
     """
@@ -180,6 +182,8 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
         mesh, name = data.mesh, data.name
     else:
         mesh, name = data.pyramid.synthesise(level), data.source_name
+    if not mesh.n_faces:
+        raise InputFileError(f"{name}: there is no triangle, so there is no surface to tile.")
     if data.system.wkt is None or data.system.kind == "unknown":
         raise CrsError(
             "{name}: nothing says where on earth this is; give its CRS with {0}.",
