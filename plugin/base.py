@@ -41,7 +41,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
 
     #: Id of the group in the toolbox.
     GROUP: ClassVar[str]
-    #: Page of the help that tells of it.
+    #: Page of the help that describes it.
     PAGE: ClassVar[str] = "qgis"
     #: Packages needed beyond NumPy and SciPy.
     PACKAGES: ClassVar[tuple[dependencies.Package, ...]] = ()
@@ -120,7 +120,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         self.addParameter(parameter)
 
     def canExecute(self) -> tuple[bool, str]:
-        """Return True always; what is missing is told, with the remedy, when it is run."""
+        """Return True always; what is missing is said, with the remedy, when it is run."""
         return True, ""
 
     def checkParameterValues(

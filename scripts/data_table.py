@@ -29,8 +29,8 @@ FOLDERS = ("dems", "clouds", "nasty", "ept", "found")
 #: Files from here on, in bytes, take long: rasters are compressed, clouds hold 10 bytes a point.
 LARGE_FILE = 600_000
 
-#: Why it is right that something is told.
-WHY_TOLD = {
+#: Why it is right that something is noted.
+WHY_NOTED = {
     "companion_of_old_output": "a file beside may describe the output that was replaced",
     "crs_missing": "without a CRS nothing says where x and y are or in what unit",
     "crs_of_unknown_kind": "a local CRS may be in any unit",
@@ -148,8 +148,8 @@ def _tried(path: Path, scratch: Path) -> tuple[list[str], list[str]]:
         happened.append(_comparison(path, back))
         reasons.append("nothing was asked to change")
     for code in dict.fromkeys(note["code"] for note in notes):
-        happened.append(f"told: {code.replace('_', ' ')}")
-        reasons.append(WHY_TOLD[code])
+        happened.append(f"noted: {code.replace('_', ' ')}")
+        reasons.append(WHY_NOTED[code])
     return happened, reasons
 
 
@@ -227,7 +227,7 @@ def main() -> int:
     names = [path.relative_to(arguments.data).as_posix() for path in files(arguments.data)]
     for name in names:
         path = arguments.data / name
-        states = {"LARGE" if is_large(path) else "SMALL", "TOLD" if name in rows else "MISSING"}
+        states = {"LARGE" if is_large(path) else "SMALL", "LISTED" if name in rows else "MISSING"}
         if arguments.only is None or arguments.only in states:
             rows[name] = row(path, arguments.data)
             print(f"{name}: {rows[name][1]}", flush=True)

@@ -1,4 +1,4 @@
-"""A table of what an option may name: its rows are all that knows of them."""
+"""A table of what an option may name: nothing but its rows knows the names."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .errors import OptionError
 
 
 class Row(Protocol):
-    """What every row tells for the lists of a command line, a dialog and the documentation."""
+    """What every row gives the lists of a command line, a dialog and the documentation."""
 
     @property
     def name(self) -> str:

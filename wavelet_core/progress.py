@@ -17,7 +17,7 @@ def report(
     fraction: float,
     message: str = "the work was cancelled; nothing was kept.",
 ) -> None:
-    """Tell a fraction, where somebody wants to know.
+    """Pass a fraction on to the caller's progress function, if there is one.
 
     Parameters
     ----------
@@ -37,7 +37,15 @@ def report(
 
 
 def part_of(progress: Progress | None, start: float, stop: float) -> Progress | None:
-    """Return the progress of a part of the work, which runs from ``start`` to ``stop`` of it."""
+    """Return the progress of a part of the work, which runs from ``start`` to ``stop`` of it.
+
+    Examples
+    --------
+    >>> seen = []
+    >>> half = part_of(seen.append, 0.5, 1.0)
+    >>> half(0.5), seen
+    (None, [0.75])
+    """
     if progress is None:
         return None
     return lambda fraction: progress(start * (1.0 - fraction) + stop * fraction)
@@ -48,7 +56,7 @@ _watching: ContextVar[Callable[[float], None] | None] = ContextVar("watching", d
 
 @contextmanager
 def watched(look: Callable[[float], None]) -> Iterator[None]:
-    """Have the long steps inside a ``with`` block tell how far they are.
+    """Have the long steps inside a ``with`` block report how far they are.
 
     Parameters
     ----------
@@ -81,7 +89,7 @@ def watched_part(
 
 
 def report_share(share: float) -> None:
-    """Tell whoever watches this step, if anybody does, how much of it is done."""
+    """Report how much of this step is done to whoever watches it, if anybody does."""
     look = _watching.get()
     if look is not None:
         look(share)
@@ -102,18 +110,18 @@ class Meter:
         self._start, self._stop, self._wanted, self._done = 0.0, 0.0, 1, 0
 
     def begin(self, start: float, stop: float, n_steps: int) -> None:
-        """Begin a part of the work, of about so many steps, and tell so."""
+        """Begin a part of the work, of about so many steps, and report that."""
         self._start, self._stop = max(start, self._reported), stop
         self._wanted, self._done = max(n_steps, 1), 0
         report(self._progress, self._reported, self._message)
 
     def tick(self) -> None:
-        """Tell that a step is done."""
+        """Report that a step is done."""
         self._done += 1
         report(self._progress, self._reported, self._message)
 
     def part(self, fraction: float) -> bool:
-        """Take the place of ``progress`` in a step that tells its own fraction."""
+        """Take the place of ``progress`` in a step that reports its own fraction."""
         span = (self._stop - self._start) / self._wanted
         report(self._progress, min(self._reported + fraction * span, self._stop), self._message)
         return True

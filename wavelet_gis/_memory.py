@@ -9,6 +9,13 @@ from pathlib import Path
 
 from wavelet_gis.errors import InputFileError
 
+#: Bytes a cell to read a raster: its values twice as 64-bit floats at worst, masks, indices.
+BYTES_TO_READ_A_CELL = 16
+
+#: Bytes for each cell with data to read a raster and analyse it; 470 were taken at most, for the
+#: 9.07 million cells of a DEM of the Pyrenees, the file and its layers included.
+BYTES_TO_ANALYSE_A_CELL = 500
+
 #: Bytes that an analysis takes at most beside its input, a vertex, and a vertex and channel beyond
 #: z; measured on rasters of 1 to 9 million cells and clouds with up to four attributes.
 BYTES_A_VERTEX = 400
@@ -57,11 +64,38 @@ def require_memory(n_vertices: int, n_channels: int, available: int | None = Non
     )
 
 
+def require_bytes(n_bytes: int, name: str, what: str, available: int | None = None) -> None:
+    """Refuse a raster that needs more memory than there is.
+
+    Parameters
+    ----------
+    n_bytes : int
+        What it needs.
+    name : str
+        Of the file, for the message.
+    what : str
+        What needs it, such as ``"4 million cells"``.
+    available : int, optional
+        Bytes that there are; by default what the system says, and without that nothing is refused.
+
+    Raises
+    ------
+    InputFileError
+        With both figures and the remedy.
+    """
+    free = available_bytes() if available is None else available
+    if free is not None and n_bytes > free:
+        raise InputFileError(
+            f"{name}: {what} need about {n_bytes / 1e9:,.1f} GB of memory and {free / 1e9:,.1f} "
+            "GB are free; cut the raster into tiles (gdal_translate -srcwin), or make it coarser "
+            "(gdalwarp -tr) first."
+        )
+
+
 def available_bytes() -> int | None:
-    """Return the memory that may still be taken; None where the system does not tell."""
-    limits = [_of_system(), _of_group()]
-    known = [limit for limit in limits if limit is not None]
-    return min(known) if known else None
+    """Return the memory that may still be taken; None where the system does not say."""
+    limits = (_of_system(), _of_group(), _of_process())
+    return min((limit for limit in limits if limit is not None), default=None)
 
 
 def _of_system() -> int | None:
@@ -71,11 +105,10 @@ def _of_system() -> int | None:
         text = Path("/proc/meminfo").read_text(encoding="ascii")
     except OSError:
         return _of_pages()
-    for line in text.splitlines():
-        name, _, value = line.partition(":")
-        if name == "MemAvailable":
-            return int(value.split()[0]) * 1024
-    return None
+    kilobytes = {line.split(":")[0]: int(line.split()[1]) for line in text.splitlines()}
+    if "MemAvailable" not in kilobytes:
+        return None
+    return 1024 * (kilobytes["MemAvailable"] + kilobytes.get("SwapFree", 0))
 
 
 def _of_pages() -> int | None:
@@ -88,13 +121,30 @@ def _of_pages() -> int | None:
 
 def _of_group() -> int | None:
     """Return what the control group of the process has left, as in a container."""
-    folder = Path("/sys/fs/cgroup")
+    root = Path("/sys/fs/cgroup")
     try:
-        limit = (folder / "memory.max").read_text(encoding="ascii").strip()
-        used = (folder / "memory.current").read_text(encoding="ascii").strip()
-    except OSError:
+        own = Path("/proc/self/cgroup").read_text("utf-8").splitlines()[-1].partition("::")[2]
+    except (OSError, ValueError, IndexError):
+        own = ""
+    for folder in (root / own.strip("/"), root):  # inside a container the own one is the root
+        try:
+            limit = (folder / "memory.max").read_text(encoding="ascii").strip()
+            used = (folder / "memory.current").read_text(encoding="ascii").strip()
+        except OSError:
+            continue
+        if limit.isdigit() and used.isdigit():
+            return max(int(limit) - int(used), 0)
+    return None
+
+
+def _of_process() -> int | None:
+    """Return the limit of the process's own addresses, as ``ulimit -v`` sets it."""
+    try:
+        import resource
+    except ImportError:
         return None
-    return max(int(limit) - int(used), 0) if limit.isdigit() and used.isdigit() else None
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    return None if limit == resource.RLIM_INFINITY else int(limit)
 
 
 def _of_windows() -> int | None:

@@ -2,7 +2,7 @@
 
 Whoever finds something out calls `note` or `warn`, wherever in the work that is; whoever runs the
 work keeps what was noted with `collected`. So the command line's text and its JSON, the report and
-the log in QGIS tell the same. A warning is also one of Python's, for scripts.
+the log in QGIS say the same. A warning is also one of Python's, for scripts.
 
 Examples
 --------
@@ -149,7 +149,7 @@ def warn(
 def _keep(entry: Note) -> None:
     """Keep a note where somebody collects them, files by their names alone.
 
-    Notes go into pyramid files, which must not tell folders and must be the same wherever they are
+    Notes go into pyramid files, which must not name folders and must be the same wherever they are
     made.
     """
     notes = _current.get()

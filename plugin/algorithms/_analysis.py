@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.analyse import Analysis
     from wavelet_gis.workflows.options import WaveletOptions
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 
 class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
@@ -97,11 +97,11 @@ class AnalysisAlgorithm(TerrainWaveletsAlgorithm):
         rules = stop_rules(request)
 
         def compute(work: Work) -> Analysis:
-            tell = work.teller(request.stage)
+            show = work.in_log(request.stage)
             return analyse(
                 terrain,
                 progress=work.progress,
-                on_stage=lambda name: tell(stages[name]),
+                on_stage=lambda name: show(stages[name]),
                 **rules,
                 **options,
             )

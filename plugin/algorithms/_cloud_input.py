@@ -36,14 +36,14 @@ if TYPE_CHECKING:
     from wavelet_gis.model.terrain import Terrain
     from wavelet_gis.workflows.options import WaveletOptions
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 #: Dimensions that are offered by name; any other can be written in.
 ATTRIBUTES = ("classification", "hag", "intensity", "rgb", "return_number", "number_of_returns")
 
 
 #: Classes that the log names one by one.
-MOST_TOLD = 12
+MOST_NAMED = 12
 
 
 class CloudInput(TerrainWaveletsAlgorithm):
@@ -93,7 +93,7 @@ class CloudInput(TerrainWaveletsAlgorithm):
             QgsProcessingParameterString("CLASSES", tr("Classes"), optional=True),
             tr(
                 "Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 "
-                "for ground and water. Empty for those of the ground, if the file tells them, else "
+                "for ground and water. Empty for those of the ground, if the file has them, else "
                 "for all."
             )
             if self.TAKES_GROUND
@@ -249,12 +249,12 @@ class CloudInput(TerrainWaveletsAlgorithm):
         named, left = request.whole_numbers("CLASSES"), self.source.classes
         if left is None:
             return named or None
-        told = (
+        listed = (
             ", ".join(map(str, left))
-            if len(left) <= MOST_TOLD
+            if len(left) <= MOST_NAMED
             else tr("{} classes").format(len(left))
         )
-        request.say(tr("The filter of the layer {} leaves: {}").format(self.source.layer, told))
+        request.say(tr("The filter of the layer {} leaves: {}").format(self.source.layer, listed))
         chosen = [number for number in left if not named or number in named]
         if not chosen:
             raise QgsProcessingException(

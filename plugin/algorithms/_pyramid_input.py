@@ -15,7 +15,7 @@ from ..ui.translation import tr
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 
 class PyramidAlgorithm(TerrainWaveletsAlgorithm):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ..base import TerrainWaveletsAlgorithm
     from ..parameters.request import Request
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
     from ..ui.dependencies import Package
 
 #: The keyword of each parameter.

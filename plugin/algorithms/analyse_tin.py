@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from wavelet_gis.model.tin import ConstrainedTin
     from wavelet_gis.workflows.options import WaveletOptions
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 
 class AnalyseTin(AnalysisAlgorithm):

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.learning.cluster import Labelled
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 TEACHERS = ("nobody: find clusters", "training areas", "classes of the LAS file")
 
@@ -153,7 +153,7 @@ class ClusterDetails(PyramidAlgorithm):
         self.add(
             QgsProcessingParameterBoolean("VALIDATE", tr("Report the accuracy"), True),
             tr(
-                "Predict blocks of the map from the others, and tell how many of their labels come "
+                "Predict blocks of the map from the others, and say how many of their labels come "
                 "out right. Takes several times as long."
             ),
             advanced=True,

@@ -20,7 +20,7 @@ from ._pyramid_input import PyramidAlgorithm
 if TYPE_CHECKING:
     from wavelet_gis.workflows.read_off.contours import Contours as Drawn
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 
 class Contours(PyramidAlgorithm):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.read_off.difference import Difference as Result
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
     from ..qgis_io.raster_reader import RasterInput
 
 

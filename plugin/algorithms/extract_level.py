@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.extract import Surface
     from wavelet_gis.workflows.tolerance.by_place import MaxError
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
     from ..ui.dependencies import Package
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.filtering import Filtered
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
     from ..ui.dependencies import Package
 
 

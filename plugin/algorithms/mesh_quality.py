@@ -25,7 +25,7 @@ from ._pyramid_input import PyramidAlgorithm
 if TYPE_CHECKING:
     from wavelet_gis.workflows.read_off.quality import LevelQuality
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 
 class MeshQuality(PyramidAlgorithm):

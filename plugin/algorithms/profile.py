@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.read_off.profile import Profile as Heights
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 
 class Profile(PyramidAlgorithm):

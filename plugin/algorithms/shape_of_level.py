@@ -19,7 +19,7 @@ from ._pyramid_input import PyramidAlgorithm
 if TYPE_CHECKING:
     from wavelet_gis.products.vertex_raster import Bands
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 #: The band of `wavelet_gis.details` that each output is.
 BANDS = {

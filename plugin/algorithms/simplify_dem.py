@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.simplify import Simplified
     from wavelet_gis.workflows.tolerance.by_place import MaxError
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
     from ..ui.dependencies import Package
 
 RULES = ("VERTICES", "MAX_ERROR", "RMSE")
@@ -241,7 +241,7 @@ class SimplifyDem(DemInput):
         }
 
         def compute(work: Work) -> Simplified:
-            tell = work.teller(request.stage)
+            show = work.in_log(request.stage)
             return simplify(
                 terrain,
                 vertices=vertices,
@@ -251,7 +251,7 @@ class SimplifyDem(DemInput):
                 refine=refine,
                 keep_points=keep_points,
                 progress=work.progress,
-                on_stage=lambda name: tell(stages[name]),
+                on_stage=lambda name: show(stages[name]),
                 **options,
             )
 

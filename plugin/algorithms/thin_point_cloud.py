@@ -35,7 +35,7 @@ class ThinPointCloud(SimplifyPointCloud):
         return tr(
             "Writes the points of a LAS, LAZ or COPC file that carry its surface best, exactly as "
             "they were, with all their dimensions: few on plains, many on banks. The ground is "
-            "taken where the file tells it. Give one of three: the number of points, the largest "
-            "error, or the root mean square error of the surface through them; with none, a "
-            "twentieth stays."
+            "taken where the file has it marked. Give one of three: the number of points, the "
+            "largest error, or the root mean square error of the surface through them; with none, "
+            "a twentieth stays."
         )

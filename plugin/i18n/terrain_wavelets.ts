@@ -145,7 +145,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_cloud_input.py"/>
-    <source>Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 for ground and water. Empty for those of the ground, if the file tells them, else for all.</source>
+    <source>Only points of these ASPRS classes, separated by commas: 2 for the ground, 2,9 for ground and water. Empty for those of the ground, if the file has them, else for all.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -655,7 +655,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>Predict blocks of the map from the others, and tell how many of their labels come out right. Takes several times as long.</source>
+    <source>Predict blocks of the map from the others, and say how many of their labels come out right. Takes several times as long.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1950,7 +1950,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/thin_point_cloud.py"/>
-    <source>Writes the points of a LAS, LAZ or COPC file that carry its surface best, exactly as they were, with all their dimensions: few on plains, many on banks. The ground is taken where the file tells it. Give one of three: the number of points, the largest error, or the root mean square error of the surface through them; with none, a twentieth stays.</source>
+    <source>Writes the points of a LAS, LAZ or COPC file that carry its surface best, exactly as they were, with all their dimensions: few on plains, many on banks. The ground is taken where the file has it marked. Give one of three: the number of points, the largest error, or the root mean square error of the surface through them; with none, a twentieth stays.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2130,7 +2130,7 @@
   </message>
   <message>
     <location filename="../../plugin/parameters/analysis_options.py"/>
-    <source>How far the outline, holes included, may move in plan, in the unit of x and y (metres for a geographic CRS), with the &lt;i&gt;surface&lt;/i&gt; partition. Empty for 0: vertices of the outline are removed only where it runs straight, which limits how coarse a level can become. The log tells how much the area changes.</source>
+    <source>How far the outline, holes included, may move in plan, in the unit of x and y (metres for a geographic CRS), with the &lt;i&gt;surface&lt;/i&gt; partition. Empty for 0: vertices of the outline are removed only where it runs straight, which limits how coarse a level can become. The log says how much the area changes.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -72,6 +72,13 @@ def add_rule_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
 
 def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
     """Declare the design of the wavelets and the vertical unit."""
+    _add_choices(algorithm)
+    _add_numbers(algorithm)
+    add_vertical_unit(algorithm)
+
+
+def _add_choices(algorithm: TerrainWaveletsAlgorithm) -> None:
+    """Declare what is chosen from the tables of the core."""
     for name, table, description, text in (
         (
             "PARTITION",
@@ -131,6 +138,9 @@ def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
     ):
         parameter, rows = table_choice(name, description, core_table(table))
         algorithm.add(parameter, text + rows, advanced=True)
+
+
+def _add_numbers(algorithm: TerrainWaveletsAlgorithm) -> None:
     algorithm.add(
         QgsProcessingParameterNumber(
             "BENDING_WEIGHT",
@@ -172,11 +182,10 @@ def add_design_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
             "How far the outline, holes included, may move in plan, in the unit of x and y (metres "
             "for a geographic CRS), with the <i>surface</i> partition. Empty for 0: vertices of "
             "the outline are removed only where it runs straight, which limits how coarse a level "
-            "can become. The log tells how much the area changes."
+            "can become. The log says how much the area changes."
         ),
         advanced=True,
     )
-    add_vertical_unit(algorithm)
 
 
 def add_vertical_unit(algorithm: TerrainWaveletsAlgorithm) -> None:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from qgis.core import QgsPointCloudLayer, QgsProcessingFeedback
 
+from ..qgis_io.background import Result, computed
 from ..qgis_io.crs_and_progress import progress, require_running
-from ..qgis_io.patience import Result, computed
 from ..ui.layer_styles import finish_output
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         QgsProcessingFeatureSource,
     )
 
-    from ..qgis_io.patience import Work
+    from ..qgis_io.background import Work
 
 #: A choice that leaves it to the workflow, whose defaults are those of the command line.
 DEFAULT = "default"
@@ -54,7 +54,7 @@ class Request:
         self.parameters = parameters
         self.context = context
         self.feedback = feedback or QgsProcessingFeedback()
-        #: Sizes and errors of what was made, told in the metadata of every layer.
+        #: Sizes and errors of what was made, for the metadata of every layer.
         self.figures: dict[str, Any] = {}
 
     # What was asked for.
@@ -173,7 +173,7 @@ class Request:
         definition = self.algorithm.parameterDefinition(name)
         help_text = "" if definition is None else definition.help()
         title = name if definition is None else definition.description()
-        # The help of a file tells what can be chosen; the first sentence of others, what it is.
+        # The help of a file says what can be chosen; the first sentence of others, what it is.
         is_layer = definition is not None and definition.type() in ("sink", "rasterDestination")
         abstract = f"{self.algorithm.displayName()}: {title}. "
         abstract += without_tags(help_text) if is_layer else ""
@@ -194,7 +194,7 @@ class Request:
         self.feedback.pushInfo(text)
 
     def stage(self, text: str) -> None:
-        """Tell what is being done; stop here if the user has cancelled."""
+        """Show what is being done; stop here if the user has cancelled."""
         self.feedback.setProgressText(text)
         require_running(self.feedback)
 
@@ -205,12 +205,12 @@ class Request:
     def computed(
         self, function: Callable[[Work], Result], start: float = 0.0, stop: float = 1.0
     ) -> Result:
-        """Return what a function computes, which may take long without telling anything.
+        """Return what a function computes, which may take long without reporting anything.
 
         Parameters
         ----------
         function : callable
-            Takes a `plugin.qgis_io.patience.Work`. It must neither write nor use layers.
+            Takes a `plugin.qgis_io.background.Work`. It must neither write nor use layers.
         start, stop : float
             The part of the bar that it drives.
         """

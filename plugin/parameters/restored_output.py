@@ -73,7 +73,7 @@ def write_restored(request: Request, restored: Reconstruction) -> dict[str, Any]
 
 
 def nothing_written(geo: GeoPyramid) -> QgsProcessingException:
-    """Return what to tell a user who chose no output that fits the pyramid."""
+    """Return what to say to a user who chose no output that fits the pyramid."""
     texts = {
         "raster": tr("This pyramid was made from a DEM; choose where the DEM goes."),
         "points": tr(

@@ -1,4 +1,4 @@
-"""GDAL's two ways of telling an error, brought to one."""
+"""GDAL's two ways of reporting an error, brought to one."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from .crs_and_progress import require_running
 if TYPE_CHECKING:
     from qgis.core import QgsFeedback
 
-#: By which QGIS itself can be told of another place.
+#: By which QGIS itself can be pointed to another place.
 VARIABLE = "QGIS_WRENCH_EXECUTABLE"
 
 

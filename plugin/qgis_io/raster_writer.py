@@ -121,7 +121,7 @@ def write_bands(
 
 
 def _check(path: str | os.PathLike[str], values: NDArray[Any]) -> None:
-    """Read a raster back: GDAL may fail when it closes a file, and tells nobody."""
+    """Read a raster back: GDAL may fail when it closes a file, and does not say so."""
     from wavelet_gis.errors import OutputFileError
 
     dataset = gdal.Open(str(path))

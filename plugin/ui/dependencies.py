@@ -149,7 +149,7 @@ def refusal(packages: Sequence[Package] = ()) -> str | None:
 
 
 def slow_without_numba() -> str | None:
-    """Return what to tell a user whose Python has no numba, or None when it is there."""
+    """Return what to say to a user whose Python has no numba, or None when it is there."""
     if not missing([NUMBA]):
         return None
     return tr(

@@ -1,6 +1,6 @@
 """QGIS's exceptions, which its stubs do not have.
 
-``QgsProcessingException`` is how an algorithm tells its user in one line why it stops;
+``QgsProcessingException`` is how an algorithm says in one line why it stops;
 ``QgsCsException`` is raised where coordinates cannot be transformed.
 """
 

@@ -1,4 +1,4 @@
-"""Which widget a dialog shows for a file, told without importing it: it needs a window."""
+"""Which widget a dialog shows for a file, named without an import: that needs a window."""
 
 from __future__ import annotations
 

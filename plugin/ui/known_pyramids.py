@@ -18,7 +18,7 @@ _made: dict[str, None] = {}
 
 
 class KnownPyramid(NamedTuple):
-    """A pyramid file and what it tells of itself.
+    """A pyramid file and what it says of itself.
 
     path : str
     title : str
@@ -53,7 +53,7 @@ def known_pyramids(project: QgsProject | None) -> list[KnownPyramid]:
 
 
 def pyramid_at(path: str) -> KnownPyramid | None:
-    """Return what a file tells of itself; None where there is no file, or no pyramid in it."""
+    """Return what a file says of itself; None where there is no file, or no pyramid in it."""
     if not os.path.isfile(path):
         return None
     from wavelet_core.errors import WaveletError

@@ -82,7 +82,7 @@ def _show(
 
     current = getattr(_feedbacks, "current", None)
     if current is not None and issubclass(category, SlowFallbackWarning):
-        return  # told already, with the remedy for this platform
+        return  # said already, with the remedy for this platform
     if current is not None and issubclass(category, TerrainWarning | WaveletWarning):
         feedback, wording = current
         feedback.pushWarning(wording(message))

@@ -1,7 +1,8 @@
 """Messages of the shared layers in the words of a dialog.
 
 The messages name the parameters of Python functions, and the errors, warnings and notes that carry
-them tell these names apart (``in_words``); here each becomes the label that the dialog shows.
+them keep these names apart from the text (``in_words``); here each becomes the label that the
+dialog shows.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ IDS = {
 
 
 class Message(Protocol):
-    """An error, a warning or a note that tells its parameters apart."""
+    """An error, a warning or a note that keeps its parameters apart from its text."""
 
     def in_words(self, name_of: Callable[[str], str]) -> str:
         """Return the text with the parameters named as the reader knows them."""
@@ -75,11 +76,11 @@ def in_words(message: Message | Warning, name_of: Callable[[str], str]) -> str:
     Parameters
     ----------
     message : WaveletError, Warning or Note
-        What is to be told; a warning of the mathematics is about no parameter.
+        What is to be said; a warning of the mathematics is about no parameter.
     name_of : callable
         From `labels_of`.
     """
-    tell = getattr(message, "in_words", None)
-    text: str = str(message) if tell is None else tell(name_of)
+    in_words = getattr(message, "in_words", None)
+    text: str = str(message) if in_words is None else in_words(name_of)
     # What starts with the name of a layer or a file keeps it as it is.
     return text if ": " in text.split(";")[0] else text[:1].upper() + text[1:]

@@ -23,7 +23,7 @@ def test_channels_take_memory():
     assert _memory.analysis_bytes(10, 4) > _memory.analysis_bytes(10, 1)
 
 
-def test_this_system_tells_what_there_is():
+def test_this_system_says_what_there_is():
     free = _memory.available_bytes()
     assert free is None or 10**6 < free < 10**14
 
@@ -31,9 +31,9 @@ def test_this_system_tells_what_there_is():
 def test_an_analysis_asks_first(monkeypatch, tif):
     import wavelet_gis as wg
 
+    terrain = wg.open(tif)
     monkeypatch.setattr(_memory, "SMALL_INPUT", 10)
     monkeypatch.setattr(_memory, "available_bytes", lambda: 1000)
-    terrain = wg.open(tif)
     for work in (lambda: wg.analyse(terrain), lambda: wg.simplify(terrain, vertices=100)):
         with pytest.raises(InputFileError, match="takes some"):
             work()

@@ -162,14 +162,14 @@ def _contains(sorted_keys, keys):
 
 
 def _is_beside(k, other, size, is_outline):
-    """Tell whether a ring entry is the one before or after another."""
+    """Return whether a ring entry is the one before or after another."""
     if abs(k - other) == 1:
         return np.ones(len(is_outline), dtype=bool)
     return ~is_outline if abs(k - other) == size - 1 else np.zeros(len(is_outline), dtype=bool)
 
 
 def _is_legal(position, v, around, is_outline, in_plan, shape, edges, n):
-    """Tell what the level alone says of the collapse onto a ring entry (Fig. 3)."""
+    """Return whether the level alone allows the collapse onto a ring entry (Fig. 3)."""
     size = around.shape[1]
     target = around[:, position]
     legal = ~is_outline | (position in (0, size - 1))
@@ -213,7 +213,7 @@ def _keeps_normal(points, v, a, b, c):
 
 
 def _come_first(v, rank, indptr, ring, ring_size):
-    """Tell which undecided vertices, in order, come before all others within two edges."""
+    """Return which undecided vertices, in order, come before all others within two edges."""
     row, place = expanded(indptr[v] + v, ring_size[v])
     sizes = ring_size[v].astype(np.int64) + 1
     starts = np.cumsum(sizes) - sizes
@@ -246,7 +246,7 @@ def _best_places(rows, choices, v, indptr, ring, ring_size, kind, n_faces_of, ma
 
 
 def _is_legal_now(v, place, indptr, ring, ring_size, kind, n_faces_of, made, n):
-    """Tell what collapses made earlier in the pass say."""
+    """Return whether the collapses made earlier in the pass allow it."""
     base, size = indptr[v] + v, ring_size[v].astype(np.int64)
     is_outline = kind[v] == BOUNDARY
     target = ring[base + place]

@@ -15,7 +15,7 @@ POINTS_AT_ONCE = 1 << 14
 
 
 def _blocks(start: int, stop: int) -> Iterator[slice]:
-    """Yield slices of points that are looked at together, telling how far they are."""
+    """Yield slices of points that are looked at together, and report how far they are."""
     for first in range(start, stop, POINTS_AT_ONCE):
         report_share((first - start) / (stop - start))
         yield slice(first, min(first + POINTS_AT_ONCE, stop))

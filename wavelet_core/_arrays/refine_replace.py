@@ -94,7 +94,7 @@ def _fan_place(side, j, size):
 
 def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, freed):
     freed[:] = -1
-    # a star is told by its shape, and so are the places in it: one place at a time
+    # stars are grouped by their shape, and so are the places in them: one place at a time
     for stars in list(stars_of(chosen, np.ones(len(chosen), dtype=bool), tin, points)):
         for j in np.unique(target[stars.rows]):
             _remove(stars, int(j), target[stars.rows] == j, base, tin, points, freed)

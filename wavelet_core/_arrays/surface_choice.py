@@ -61,7 +61,7 @@ def check_links(start, stop, odd, target, mesh, is_linked):
 
 
 def are_linked(ring, target, n_sides, mesh):
-    """Tell of each ring whether it shares with the target's but the vertices beside the target."""
+    """Return of each ring whether it shares with the target's only the two beside the target."""
     n, size = ring.shape
     shared = np.zeros(n, dtype=np.int64)
     active, half_edge = np.arange(n), mesh.outgoing[target]

@@ -48,7 +48,7 @@ class Block(NamedTuple):
     v : (n,) the vertices; ring, spoke : (n, size), (n, n_sides)
     rule, along : (n,) of the outline; NONE inside
     rx, ry, rz : (n, size), (n, size, c) where the rings lie, from v
-    row, px, py, pz : (k,) the points, from the vertex that `row` tells
+    row, px, py, pz : (k,) the points, from the vertex that `row` gives
     n_points : (n,) how many each has
     """
 

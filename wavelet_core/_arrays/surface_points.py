@@ -93,7 +93,7 @@ def _hand_over_rows(
 
 
 def _cut_edges(v, around, faces, surface, squared_tolerance):
-    """Tell which rows' new outline edge cuts their vertex off, and that edge from the target."""
+    """Return which rows' new outline edge cuts their vertex off, and that edge from the target."""
     if squared_tolerance <= 0.0:
         return None
     ends_at_target = faces[:, 0] < 0

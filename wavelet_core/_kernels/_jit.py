@@ -4,7 +4,7 @@ A kernel is written as loops. With numba they are compiled; without it, its twin
 :mod:`wavelet_core._arrays` does the same on whole arrays of numpy, for which every sum is taken in
 the same order: the bytes are the same. The loops themselves, run by Python, are the oracle that
 tests hold both against; in use they run only for the two kernels without a twin, those of the
-NNLS and least squares predictions. docs/topics/engines.md tells a user the same.
+NNLS and least squares predictions. docs/topics/engines.md is the user's version of this.
 
 Squares are written as products there: Python's ``x**2`` is one of the C library's powers, which may
 be off by the last bit.
@@ -41,7 +41,7 @@ ENGINES = ("compiled", "arrays", "loops")
 #: Above this many items a kernel without a twin is refused where it would run as plain loops: they
 #: take a fraction of a millisecond an item.
 MAX_LOOPS = 50_000
-#: Inputs with more vertices than this are told that numba would be faster.
+#: Inputs with more vertices than this make the program mention that numba would be faster.
 ANNOUNCED_FROM = 100_000
 #: Inputs of up to so many vertices are done on whole arrays before numba, which takes some 25 s to
 #: compile the kernels the first time ever, would have begun.

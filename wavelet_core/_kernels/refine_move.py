@@ -2,7 +2,7 @@
 
 While a vertex v moves by (dx, dy) and its height by dz, the error of a point in a face of its star
 changes by w (dz - gx dx - gy dy) to first order: w is the weight of v at the point, (gx, gy) the
-gradient of the face. Sums of w times w and of w times error over each face so tell, for any
+gradient of the face. Sums of w times w and of w times error over each face so give, for any
 place, about what the error would be; only the most promising places are tried at all points.
 """
 

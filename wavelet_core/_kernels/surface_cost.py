@@ -31,7 +31,7 @@ from .outline import CUTS, STAYS, nearest_on_edge, outline_rule
 FLATNESS_TOLERANCE = 1e-9
 LEAST_SQUARES = 0
 LARGEST = 1
-# With the largest error as the norm, the mean square tells targets of the same largest error
+# With the largest error as the norm, the mean square ranks targets of the same largest error
 # apart: it may add this share of the largest error. From none to a thousandth makes no difference
 # above 0.1 % on five DEMs, a tenth is 2 % worse: it only decides where errors are equal.
 TIE_SHARE = 1e-3
@@ -249,7 +249,7 @@ def lay_fan(j, size, ring_x, ring_y, ring_z, fan_x, fan_y, slope_x, slope_y):
 # Which face of that fan holds the point at (x, y) from its centre?
 @inlined
 def find_wedge(n_wedges, is_wide, fan_x, fan_y, x, y):
-    if is_wide:  # the side of a single ray tells nothing across half a turn
+    if is_wide:  # the side of a single ray says nothing across half a turn
         for t in range(n_wedges):
             if fan_x[t] * y - fan_y[t] * x >= 0.0 and fan_x[t + 1] * y - fan_y[t + 1] * x <= 0.0:
                 return t
@@ -288,7 +288,7 @@ def fan_error(
 
 
 # The legal target that leaves the least error in the star, and that error; the ring position is
-# NONE where no target stays below `bound`, and the last value tells whether the bound was met.
+# NONE where no target stays below `bound`, and the last value says whether the bound was met.
 # Targets whose errors differ by rounding are equal, and the first in order is taken.
 @inlined
 def best_target(

@@ -178,7 +178,7 @@ def surface_shape(mesh: TriangleMesh) -> SurfaceShape:
     ----------
     I. S. Evans: An integrated system of terrain analysis and slope mapping. Zeitschrift für
     Geomorphologie, Suppl. 36, 1980. J. Krcho: Modelling of georelief. Bratislava, 2001
-    (signs and names of the curvatures vary between authors; ours are told with each).
+    (signs and names of the curvatures vary between authors; ours are given with each).
 
     Examples
     --------

@@ -109,7 +109,7 @@ def energy_signature(
 
 
 def scale_features(pyramid: Pyramid, progress: Progress | None = None) -> Signature:
-    """Return everything that the scales tell of each vertex: what classes are learned from.
+    """Return everything that the scales show of each vertex: what classes are learned from.
 
     Parameters
     ----------

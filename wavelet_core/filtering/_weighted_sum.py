@@ -17,10 +17,10 @@ from .undecimated import UndecimatedBank
 
 
 class Damping(NamedTuple):
-    r"""Local energies, in units of the noise, that tell details of terrain from those of noise.
+    r"""Local energies, in units of the noise, that separate details of terrain from those of noise.
 
     A detail may be changed by a function of its local energy, a weighted sum of 1 and of
-    :math:`\exp(-(E / T)^2)` with T each of ``scales``. Such a function is told by its values at
+    :math:`\exp(-(E / T)^2)` with T each of ``scales``. Such a function is given by its values at
     as many energies ``probed``: none, noise and a half, all.
     """
 

@@ -30,7 +30,7 @@ def band_gains(
     lengths : (float, float), optional
         Instead, shortest and longest size on the ground, in the unit of x and y: details are
         kept if the median edge length of the mesh that they were taken from is in between, as
-        `wavelet_core.level_spacings` tells it.
+        `wavelet_core.level_spacings` returns it.
     is_empty_fine : bool
         Whether a band of lengths that no level has details of is no error; all are dropped then.
 

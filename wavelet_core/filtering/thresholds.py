@@ -27,7 +27,7 @@ SOFT_THRESHOLD = 1.5
 #: Rounds of averaging over rings that a local energy is taken over. 2 and 8 change the RMSE on the
 #: same crops by 1 %.
 LOCAL_ROUNDS = 4
-#: The kind of pyramid whose details tell noise from terrain.
+#: The kind of pyramid whose details separate noise from terrain.
 PLAIN: dict[str, Any] = {"partition": "random", "prediction": "plane"}
 
 
@@ -77,7 +77,7 @@ def denoised(
 
     Notes
     -----
-    Details are told from noise where a level holds one band of scales and its filters follow no
+    Details stand out of noise where a level holds one band of scales and its filters follow no
     value: in a random order, predicted from planes. The default partition keeps what stands out,
     noise too, and thresholds left 80 % of it. A pyramid of another kind is therefore built anew in
     that way from its finest mesh, and what comes out is lifted by the filters it has.

@@ -18,12 +18,12 @@ IndexArray = NDArray[np.int64]
 #: Width of the smoother's weights, in mean distances of a ring. Half of it leaves 0 to 2.7 % more
 #: error on crops of two DEMs, twice as much 0.1 % more or less.
 SMOOTHER_WIDTH = 0.7
-#: Directions in plan along which curvature is told apart: three numbers make a second derivative.
+#: Directions in plan along which curvature is resolved: three numbers make a second derivative.
 N_DIRECTIONS = 3
-#: Meshes below this many vertices tell no directions: they would fit weights to noise.
+#: Meshes below this many vertices get no directions: they would fit weights to noise.
 LEAST_FOR_DIRECTIONS = 3_000
 #: Ridges of the local fits, relative to their sums of squares. That of the plane only keeps
-#: collinear rings solvable; that of the curvature bounds it where a ring hardly tells it;
+#: collinear rings solvable; that of the curvature bounds it where a ring hardly determines it;
 #: a tenth of it and ten times as much give the same error to four digits.
 PLANE_RIDGE, CURVATURE_RIDGE = 1e-9, 1e-3
 #: Rounds of averaging over rings that a variance of noise is pooled over, at the finest scale; 1

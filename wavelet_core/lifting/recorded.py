@@ -2,7 +2,7 @@
 
 An error-guided pyramid follows from its input and from which collapse was taken when: weights,
 details, integrals and coarse coefficients are worked out by the operations of the analysis, in its
-order, so they come out to the bit. Which collapses those were is told by few symbols, see
+order, so they come out to the bit. Which collapses those were takes few symbols, see
 `wavelet_core.partition.questions`.
 
 So that coarse levels are had without the input, a large pyramid is recorded in parts: each begins
@@ -117,8 +117,8 @@ class KeptRecord(NamedTuple):
 class Recorder:
     """Takes the record of a pyramid during its analysis, while the state of each level is at hand.
 
-    The first part is told by what the analysis itself works on; later ones, which begin with few
-    vertices, by a level beside it that begins as that of a reader does.
+    The first part is recorded from what the analysis itself works on; later ones, which begin with
+    few vertices, by a level beside it that begins as that of a reader does.
 
     Parameters
     ----------
@@ -297,7 +297,7 @@ def pyramid_of(
     Raises
     ------
     PyramidError
-        The record tells no pyramid of this mesh.
+        The record describes no pyramid of this mesh.
     """
     frame = frame_of(mesh, parameters["attribute_weights"])
     manner = _manner_of(update, parameters, frame)
@@ -359,7 +359,7 @@ def part_of(
     Raises
     ------
     PyramidError
-        The record tells no levels on these vertices.
+        The record describes no levels on these vertices.
     """
     part, frame = record.parts[index], record.frame
     assert part.ids is not None

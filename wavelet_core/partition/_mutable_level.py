@@ -325,7 +325,7 @@ class SurfaceLevel:
     ) -> NDArray[np.int32]:
         """Return those candidates that go: no two of them neighbours, the cheaper one first.
 
-        The set is the one that a single pass in order of cost would find; equal costs are told
+        The set is the one that a single pass in order of cost would find; equal costs are kept
         apart by a number scattered over the vertices, so that flat terrain is not thinned in
         rows. At most ``max_odd`` go, whose costs sum to at most ``budget``.
         """

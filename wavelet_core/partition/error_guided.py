@@ -170,7 +170,7 @@ def analyse_surface(
     integrals : ndarray, shape (n_vertices,), optional
         Of the scaling functions of the input; by default 1.
     recorder : Recorder, optional
-        Is told every step.
+        Is given every step.
     """
     level = SurfaceLevel(
         plan, columns * weights, faces, locked, rules.with_update, rules.outline_tolerance

@@ -17,9 +17,9 @@ from ..mesh.curvature import bending_energy
 from ..mesh.quadric import build_quadrics, collapse_costs, redistribute_quadrics, vertex_costs
 from ._mutable_level import SurfaceLevel
 
-#: Share of the vertices whose bending energy is told apart; the rest count as the highest.
+#: Share of the vertices whose bending energies count as different; the rest count as the highest.
 ENERGY_QUANTILE = 0.99
-#: Bending energies are told apart in steps of this: the angles that they sum leave up to 1e-14 of a
+#: Bending energies are compared in steps of this: the angles that they sum leave up to 1e-14 of a
 #: plane, and faces that meet at 1e-6 have that energy.
 ENERGY_STEP = 1e-12
 

@@ -2,7 +2,7 @@
 
 For pyramids whose heights are no longer those of an input, such as filtered ones. Corners and
 weights follow from the places of the vertices in plan, so that of each collapse only the place of
-its target is told, among the legal ones, the nearest first.
+its target is kept, among the legal ones, the nearest first.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def places_of_steps(
     outline_tolerance: float,
     steps: Sequence[CollapseStep],
 ) -> list[NDArray[np.uint8]] | None:
-    """Return the places of the targets of each step; None where they do not tell it to the bit.
+    """Return the places of the targets of each step; None where they do not give them to the bit.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def steps_at_places(
     faces: NDArray[np.int32],
     locked: NDArray[np.bool_],
     outline_tolerance: float,
-    told: Sequence[tuple[NDArray[np.int32], NDArray[np.uint8]]],
+    moves: Sequence[tuple[NDArray[np.int32], NDArray[np.uint8]]],
 ) -> Iterator[CollapseStep]:
     """Yield the steps, the finest first, without details, of vertices that go to such places.
 
@@ -72,16 +72,16 @@ def steps_at_places(
     ----------
     plan, faces, locked, outline_tolerance
         As for `places_of_steps`; a manifold, counter-clockwise in plan.
-    told : sequence of (odd, places)
+    moves : sequence of (odd, places)
         Of each step, the finest first; of any origin.
 
     Raises
     ------
     PyramidError
-        They tell no steps of an analysis.
+        They describe no steps of an analysis.
     """
     level = _start(plan, faces, locked, outline_tolerance)
-    for odd, places in told:
+    for odd, places in moves:
         is_sound = (
             len(odd) > 0
             and odd.shape == places.shape

@@ -39,7 +39,7 @@ CODES_IN_CLASS = 128
 #: The class of the forecasts in the middle of those that go, and the last one.
 MIDDLE_CLASS = 8
 LAST_CLASS = 14
-#: Codes that tell how much better the best target is than the next one.
+#: Codes for how much better the best target is than the next one.
 CODES_IN_DOUBT = 96
 #: Forecasts below the square of so many steps of rounding are nothing.
 NEGLIGIBLE_STEPS = 16.0
@@ -89,7 +89,7 @@ class Collapses(NamedTuple):
 
 
 def ask(pen: Pen, sight: Sight, truth: Collapses | None = None) -> Collapses:
-    """Return the collapses of a step: those that the pen is told, or that it tells.
+    """Return the collapses of a step: those given, which the pen writes, or those that it reads.
 
     Raises
     ------
@@ -97,13 +97,13 @@ def ask(pen: Pen, sight: Sight, truth: Collapses | None = None) -> Collapses:
         The answers are those of no step that an analysis takes.
     """
     best, second = _forecasts(sight)
-    is_odd, told = None, None
+    is_odd, bounds = None, None
     if truth is not None:
         is_odd = np.zeros(len(best), dtype=bool)
         is_odd[truth.odd] = True
         codes = np.sort(best[truth.odd])
-        told = int(codes[-1]), int(codes[len(codes) // 2])
-    highest, middle = pen.level(told)
+        bounds = int(codes[-1]), int(codes[len(codes) // 2])
+    highest, middle = pen.level(bounds)
     odd = _ask_going(pen, sight, best, highest, middle, is_odd)
     if len(odd) == 0:
         raise PyramidError("a step without odd vertices; the file is damaged.")
@@ -203,7 +203,7 @@ class Pen(Protocol):
 
 
 class Writer:
-    """A pen that keeps the answers it is told."""
+    """A pen that keeps the answers it is given."""
 
     def __init__(self) -> None:
         self._levels: list[tuple[int, int]] = []

@@ -1,6 +1,6 @@
 """The steps of an error-guided analysis as few symbols, and from those the steps again.
 
-What the questions are is told in `wavelet_core.partition.questions`. An analysis answers them at
+The questions are those of `wavelet_core.partition.questions`. An analysis answers them at
 each of its steps; whoever has the answers takes the same steps again.
 """
 
@@ -75,7 +75,7 @@ class RecordedLevel(SurfaceLevel):
         self._vertices.integrals[:] = start.integrals
 
     def take(self, pen: Pen, truth: CollapseStep | None = None) -> CollapseStep:
-        """Take the next step: the one that the pen is told, or that it tells.
+        """Take the next step: the one given, which the pen writes, or the one that it reads.
 
         Raises
         ------
@@ -134,7 +134,7 @@ def record(
     weights: FloatArray,
     progress: Progress | None = None,
 ) -> Answers | None:
-    """Return the answers that tell the steps from ``level`` on; None where they do not to the bit.
+    """Return the answers that give the steps from ``level`` on; None where they do not to the bit.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def record(
 
 
 def takes(level: RecordedLevel, writer: Writer, step: CollapseStep, weights: FloatArray) -> bool:
-    """Take one step of an analysis, and tell whether it came out to the bit; see `record`."""
+    """Take one step of an analysis; return whether it came out to the bit, see `record`."""
     if len(step.odd) == 0 or not (np.diff(step.odd) > 0).all():
         return False
     try:
@@ -172,7 +172,7 @@ def takes(level: RecordedLevel, writer: Writer, step: CollapseStep, weights: Flo
 def replay(
     level: RecordedLevel, answers: Answers, progress: Progress | None = None
 ) -> list[CollapseStep]:
-    """Return the steps that answers tell, the finest first; ``level`` is left where they end.
+    """Return the steps that answers describe, the finest first; ``level`` is left where they end.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def replay(
     Raises
     ------
     PyramidError
-        They tell no steps of an analysis.
+        They describe no steps of an analysis.
     """
     reader = Reader(answers)
     steps = []

@@ -35,7 +35,7 @@ def flag_names(
     Returns
     -------
     callable
-        A parameter that no command has stays as it is; one that a flag switches off is told so.
+        A parameter that no command has keeps its name.
 
     Examples
     --------

@@ -103,7 +103,7 @@ def _run(chosen: argparse.Namespace, console: Console) -> int:
 
 
 def _remedy(error: OSError | sqlite3.Error) -> str:
-    """Return what to look at, by the number of the error; empty where only the text tells."""
+    """Return what to look at, by the number of the error; empty where only the text says it."""
     if isinstance(error, sqlite3.Error):
         code = getattr(error, "sqlite_errorcode", 0) & 0xFF
         is_full, is_held = code == sqlite3.SQLITE_FULL, code == sqlite3.SQLITE_BUSY

@@ -18,14 +18,14 @@ def agreed(
     any_crs: bool = False,
     any_unit: bool = False,
 ) -> Georeference:
-    """Return what several files tell of their coordinates, which must be the same.
+    """Return the georeference that several files have, which must be the same.
 
     Parameters
     ----------
     names : sequence of str
         Of the files, for messages.
     places : sequence of Georeference
-        What each tells.
+        That of each.
     any_crs, any_unit : bool
         Whether the CRS, or the unit of z, is given otherwise: theirs need not be the same, and
         what is returned has none.

@@ -121,7 +121,7 @@ class Georeference(NamedTuple):
     wkt : str or None
         Of the CRS.
     vertical_unit : str or None
-        Name of the unit of z where the file tells it outside the CRS.
+        Name of the unit of z where the file gives it outside the CRS.
     fault : str
         What is wrong with the file's CRS, where it has one that cannot be used.
     notes : tuple of str

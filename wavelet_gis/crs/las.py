@@ -154,11 +154,11 @@ def _from_keys(keys: dict[int, int], faults: list[str], notes: list[str]) -> CRS
 
 def _note_unit(keys: dict[int, int], crs: CRS, code: int, notes: list[str]) -> None:
     """Say so where the keys have another unit of x and y than the CRS that they name."""
-    told = _METRES.get(keys.get(_PROJECTED_UNIT, 0))
-    if told is None or not crs.is_projected or not crs.axis_info:
+    named = _METRES.get(keys.get(_PROJECTED_UNIT, 0))
+    if named is None or not crs.is_projected or not crs.axis_info:
         return
     actual = crs.axis_info[0].unit_conversion_factor
-    if abs(told - actual) > 1e-9:
+    if abs(named - actual) > 1e-9:
         notes.append(
             f"the GeoTIFF keys name EPSG:{code}, which counts in "
             f"{crs.axis_info[0].unit_name}, and say that x and y are in "
@@ -196,11 +196,11 @@ def _with_height(crs: CRS, keys: dict[int, int], notes: list[str]) -> CRS:
             f"the GeoTIFF keys name {vertical} as vertical CRS, which is none; it is left open"
         )
         return crs
-    told = coordinate_system(height.to_wkt()).vertical_unit
-    if unit is not None and told is not None and told != unit:
+    named = coordinate_system(height.to_wkt()).vertical_unit
+    if unit is not None and named is not None and named != unit:
         notes.append(
-            f"the GeoTIFF keys name EPSG:{code}, which is in {_spaced(told)}, and say that z is in "
-            f"{_spaced(unit)}; the unit holds and the vertical CRS is left open"
+            f"the GeoTIFF keys name EPSG:{code}, which is in {_spaced(named)}, and say that z is "
+            f"in {_spaced(unit)}; the unit holds and the vertical CRS is left open"
         )
         return crs
     try:

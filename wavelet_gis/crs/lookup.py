@@ -103,7 +103,7 @@ def _vertical_unit(crs: CRS) -> str | None:
     source = crs.source_crs if crs.is_bound and crs.source_crs is not None else crs
     for axis in source.axis_info:
         if axis.direction.lower() == "up":
-            for name, metres in VERTICAL_UNITS.items():  # the factor tells more than the name
+            for name, metres in VERTICAL_UNITS.items():  # the factor says more than the name
                 if abs(axis.unit_conversion_factor - metres) < 1e-9:
                     return name
             try:

@@ -88,7 +88,7 @@ def projected(
 def scale_at(system: CoordinateSystem, x: float, y: float) -> float:
     """Return how many times too long (or, below 1, too short) distances in a plane are at a point.
 
-    The larger of the scales along meridian and parallel; 1 where it cannot be told.
+    The larger of the scales along meridian and parallel; 1 where it is unknown.
     """
     if system.kind != "projected" or system.wkt is None:
         return 1.0

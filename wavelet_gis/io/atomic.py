@@ -246,7 +246,7 @@ def _place(target: Path) -> Path:
 
 @contextmanager
 def _named(scratch: Path, target: Path) -> Iterator[None]:
-    """Let errors tell of the file that the user named, not of the scratch file."""
+    """Let errors name the file that the user named, not the scratch file."""
     try:
         yield
     except Exception as error:

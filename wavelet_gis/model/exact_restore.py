@@ -1,7 +1,7 @@
 """Bit-for-bit originals beside a synthesis that is exact only to rounding.
 
 A pyramid gives each value back with an error of some 1e-13 of its column's range. So the column
-that came in is kept beside it (`KeptColumn`): in a pyramid file it is what all else is told by, and
+that came in is kept beside it (`KeptColumn`): in a pyramid file all else is described by it, and
 takes no byte more. Synthesis must come as close to it as it did when the pyramid was made.
 
 Files of format 1 keep instead the little that synthesis lacks (`ExactColumn`):

@@ -42,7 +42,7 @@ class GeoPyramid:
     history : tuple of str
         One line for each change since the analysis (filters).
     notes : tuple of Note
-        What was worth telling about the input and its analysis.
+        What was worth saying about the input and its analysis.
     """
 
     pyramid: Pyramid

@@ -57,7 +57,7 @@ class Terrain:
     vertical_unit : str
         Unit of z in the file.
     notes : tuple of Note
-        What is worth telling about it.
+        What is worth saying about it.
     merged : (n_merged, 3) float64 or None
         Points in the working frame that share x and y with a vertex which stands for them, where
         the origin does not keep them.
@@ -287,7 +287,7 @@ def frame_of_bounds(
     Warns
     -----
     CrsWarning, UnitWarning
-        As `wavelet_gis.workflows.opening.raster_or_cloud.open_terrain` tells.
+        See `wavelet_gis.workflows.opening.raster_or_cloud.open_terrain`.
     """
     try:
         frame = working_frame(system, bounds, vertical_unit)
@@ -353,7 +353,7 @@ def frame_of_bounds(
 
 
 def _about(name: str, error: WaveletError, kind: type[WaveletError]) -> WaveletError:
-    """Return the error with the name of the input before it, its parameters still told apart."""
+    """Return the error with the name of the input before it, its parameters still named."""
     if not error.options and not error.values:
         return kind(f"{name}: {error}")
     return kind("{name}: " + error.template, *error.options, name=name, **error.values)

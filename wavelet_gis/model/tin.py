@@ -82,11 +82,11 @@ def tin_with_lines(
         Lines, and the rings of a clip polygon (closed: the last corner repeats the first). They
         may share corners but must not cross. Where z is NaN it is that of the TIN of the points.
     border : sequence of ndarray, shape (n, 3)
-        More such lines, of the terrain itself, of which nothing is told in the result.
+        More such lines, of the terrain itself, which the result does not report on.
     contains : callable, optional
-        Takes (m, 2) positions and tells which are inside outline and border.
+        Takes (m, 2) positions and returns which are inside outline and border.
     is_marked : ndarray of bool, shape (n_points,), optional
-        Points to be told of in the result, for locking.
+        Points to be marked in the result, for locking.
 
     Returns
     -------

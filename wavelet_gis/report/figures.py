@@ -15,7 +15,7 @@ from wavelet_core import OptionError, Progress, TriangleMesh, surface_shape
 from wavelet_core.metrics import surface_errors
 from wavelet_core.progress import report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.read_off.levels import telling_levels
+from wavelet_gis.workflows.read_off.levels import default_levels
 from wavelet_gis.workflows.solver.quality import triangle_quality
 
 __all__ = ["ReportData", "report_data"]
@@ -64,7 +64,7 @@ def report_data(
     geo : GeoPyramid
         What is reported on.
     levels : sequence of int, optional
-        Which levels are shown as pictures; see `telling_levels`.
+        Which levels are shown as pictures; see `default_levels`.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -76,7 +76,7 @@ def report_data(
         ``progress`` returned False.
     """
     pyramid = geo.pyramid
-    chosen = telling_levels(geo) if levels is None else list(dict.fromkeys(levels))
+    chosen = default_levels(geo) if levels is None else list(dict.fromkeys(levels))
     for level in chosen:
         if not 0 <= level <= pyramid.n_levels:
             raise OptionError(f"there is no level {level}; they are 0 to {pyramid.n_levels}.")

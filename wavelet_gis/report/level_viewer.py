@@ -44,7 +44,7 @@ def level_viewer(
     Returns
     -------
     page : str
-        Self-contained; opens in any browser with WebGL 2. Without that, its table tells the same.
+        Self-contained; opens in any browser with WebGL 2. Without that, its table says the same.
     figures : dict
         JSON-able: the levels that are shown, with their sizes and errors.
 

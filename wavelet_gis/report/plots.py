@@ -17,7 +17,7 @@ from wavelet_gis.model.geo_pyramid import GeoPyramid
 
 __all__ = ["plot_details"]
 
-#: Markers beyond this number are not told apart; the largest are drawn.
+#: Markers beyond this number would only cover each other; the largest are drawn.
 MAX_MARKERS = 8_000
 
 #: Area in square points of the largest marker.

@@ -112,7 +112,14 @@ def _charts(profile: Profile, line: int, n_lines: int) -> str:
         f'<text x="{(_LEFT + WIDTH - _RIGHT) / 2}" y="{bottom + _GAP + _LOWER + 36}" '
         f'text-anchor="middle">distance{unit_x and ", " + unit_x}</text>'
     )
-    for row, k in enumerate(sorted(order, key=lambda k: profile.levels[k])):
+    return "".join([*parts, _legend(profile, finest)])
+
+
+def _legend(profile: Profile, finest: int) -> str:
+    """Return the levels with their colours and sizes, coarsest first."""
+    parts = []
+    order = np.argsort(profile.levels, kind="stable")
+    for row, k in enumerate(order.tolist()):
         y = _HEAD + 14 + 20 * row
         is_finest = k == finest
         colour = _FINEST if is_finest else _colour(profile, k)

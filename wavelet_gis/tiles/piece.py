@@ -106,7 +106,7 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
     Notes
     -----
     Both files are written aside and renamed, the record last: whoever finds it finds the whole.
-    What is wrong with a piece is told in the record, which then names no file.
+    What is wrong with a piece stands in the record, which then names no file.
     """
     path = Path(folder) / PLAN
     plan = TilePlan.from_json(path.read_text("utf-8"), str(path))

@@ -91,34 +91,20 @@ def extract_region(
             "{0} is {max_error}; give a distance of 0 or more.", "max_error", max_error=max_error
         )
     area = area_of(plan, bbox, polygon)
-    errors = None
-    if max_error is None:
-        stage, below = found.place_of(level or 0)
-        pieces = [piece for piece in found.whole(stage) if area.has_piece(piece)]
-        geos = [_loaded(found, piece, below) for piece in pieces]
-        meshes = [
-            geo.pyramid.mesh(_level(found, piece, below))
-            for piece, geo in zip(pieces, geos, strict=True)
-        ]
-        finest = level or 0
-    else:
-        stage = plan.n_stages - 1
-        z_scale = plan.local_frame.z_scale
-        chosen = list(pieces_within(found, area, max_error * z_scale))
-        pieces = [one.piece for one in chosen]
-        meshes = [one.mesh for one in chosen]
-        finest = max((found.level_of(one.piece, one.level) for one in chosen), default=0)
-        errors = _errors_of([one.errors for one in chosen], z_scale)
-        geos = [_loaded(found, piece, found.levels_of(piece.stage)) for piece in pieces[:1]]
-    _warn_of_gaps(found, area, stage)
-    if not meshes:
+    parts = (
+        _at_level(found, area, level or 0)
+        if max_error is None
+        else (_within(found, area, max_error))
+    )
+    _warn_of_gaps(found, area, parts.stage)
+    if not parts.meshes:
         raise InputFileError(
             "{path}: no tile reaches into the region; see the footprints in its index, and give "
             "another {0}.",
             area.option,
             path=found.folder,
         )
-    whole = join(plan, meshes, [np.ones(mesh.n_vertices) for mesh in meshes])
+    whole = join(plan, parts.meshes, [np.ones(mesh.n_vertices) for mesh in parts.meshes])
     mesh, cells = whole.mesh, whole.cells
     if area.shape is not None:
         used, faces = np.unique(mesh.faces[area.faces_of(mesh)], return_inverse=True)
@@ -132,8 +118,50 @@ def extract_region(
             mesh.vertices[used], faces.reshape(-1, 3), mesh.attributes[used], whole.names
         )
         cells = cells[used]
-    geo = replace(geos[0], origin=MeshOrigin(), errors=None, notes=())
-    return Region(Surface(geo, mesh, cells, finest, errors), tuple(pieces))
+    assert parts.geo is not None
+    geo = replace(parts.geo, origin=MeshOrigin(), errors=None, notes=())
+    return Region(Surface(geo, mesh, cells, parts.level, parts.errors), tuple(parts.pieces))
+
+
+class _Parts(NamedTuple):
+    """The pieces of a region, each at its level.
+
+    geo : GeoPyramid, of the first; None where there is none
+    level : int, of the whole; the finest of its parts
+    stage : int, the coarsest that was looked at
+    """
+
+    pieces: list[Piece]
+    meshes: list[TriangleMesh]
+    geo: GeoPyramid | None
+    level: int
+    stage: int
+    errors: SurfaceErrors | None
+
+
+def _at_level(index: TileIndex, area: Area, level: int) -> _Parts:
+    stage, below = index.place_of(level)
+    pieces = [piece for piece in index.whole(stage) if area.has_piece(piece)]
+    geos = [_loaded(index, piece, below) for piece in pieces]
+    meshes = [
+        geo.pyramid.mesh(_level(index, piece, below))
+        for piece, geo in zip(pieces, geos, strict=True)
+    ]
+    return _Parts(pieces, meshes, next(iter(geos), None), level, stage, None)
+
+
+def _within(index: TileIndex, area: Area, max_error: float) -> _Parts:
+    z_scale = index.plan.local_frame.z_scale
+    chosen = list(pieces_within(index, area, max_error * z_scale))
+    pieces = [one.piece for one in chosen]
+    return _Parts(
+        pieces,
+        [one.mesh for one in chosen],
+        _loaded(index, pieces[0], index.levels_of(pieces[0].stage)) if pieces else None,
+        max((index.level_of(one.piece, one.level) for one in chosen), default=0),
+        index.plan.n_stages - 1,
+        _errors_of([one.errors for one in chosen], z_scale),
+    )
 
 
 def terrain_of_region(

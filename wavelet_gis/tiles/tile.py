@@ -24,7 +24,7 @@ from wavelet_gis.tiles.runner import Job, records_of, require_dask
 
 __all__ = ["Tiled", "run_plan", "tile_clouds", "tile_rasters"]
 
-#: Told of each piece: its record, how many are done, how many there are.
+#: Called for each piece: with its record, how many are done, how many there are.
 OnPiece = Callable[[dict[str, Any], int, int], None]
 
 
@@ -104,7 +104,7 @@ def tile_rasters(
     overwrite : bool
         Whether a tile set of another input, or of other options, may be replaced.
     on_piece : callable, optional
-        Told of each piece as it is made or found: its record, how many are done, and of how many.
+        Called as each piece is made or found: its record, how many are done, and of how many.
     **options
         ``crs``, ``vertical_unit``, ``band``, ``nodata``, ``offline`` and ``wavelets``; see
         `wavelet_gis.tiles.plan.plan_of_rasters`.
@@ -261,7 +261,7 @@ def _cut(
         (make_cut, (str(folder), number)) for number in needed if not is_cut(folder, plan, number)
     ]
     for _ in records_of(jobs, workers, scheduler):
-        pass  # what is wrong with one is told by the tiles that need it
+        pass  # what is wrong with one is reported by the tiles that need it
 
 
 def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:

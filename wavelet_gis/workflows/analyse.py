@@ -10,6 +10,7 @@ from typing import Any, Unpack
 from wavelet_core import Progress, TriangleMesh
 from wavelet_core import analyse as core_analyse
 from wavelet_core.errors import OptionError
+from wavelet_core.progress import part_of
 from wavelet_gis._memory import require_memory
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -17,7 +18,7 @@ from wavelet_gis.model.origin import Original
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, collected, note
-from wavelet_gis.progress import Clock, part_of
+from wavelet_gis.progress import Clock
 from wavelet_gis.workflows.extract import SurfaceErrors
 from wavelet_gis.workflows.lines.errors import figures_along_lines, measured_along_lines
 from wavelet_gis.workflows.options import (
@@ -60,7 +61,7 @@ class Analysis:
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What is worth telling about the input and its analysis."""
+        """What is worth saying about the input and its analysis."""
         return self.geo.notes
 
     def mesh(self, level: int = 0) -> TriangleMesh:

@@ -55,7 +55,7 @@ class Surface(InOtherLibraries):
     level : int
         The level that it is, or, of a size between two, the finer one.
     errors : SurfaceErrors or None
-        At all input points; None for a level of a pyramid that does not tell them.
+        At all input points; None for a level of a pyramid that does not hold them.
     zones : tuple of ZoneErrors
         Where the tolerance was given by place: the errors by its size, the strictest first.
     """
@@ -204,7 +204,7 @@ def extract(
     Returns
     -------
     Surface
-        With its errors, but for a level whose errors the pyramid's file does not tell.
+        With its errors, but for a level whose errors the pyramid's file does not hold.
 
     Raises
     ------

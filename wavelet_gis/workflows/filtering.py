@@ -24,13 +24,13 @@ from wavelet_core.filtering.gains import channel_index
 from wavelet_core.filtering.noise.model import Noise, RangeOption
 from wavelet_core.filtering.noise.white import estimate_noise
 from wavelet_core.lifting.spacings import mesh_spacing
+from wavelet_core.progress import part_of
 from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
 from wavelet_gis.model.attributes.categories import category_gains
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.notes import warn
-from wavelet_gis.progress import part_of
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, require_levels
 from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
 from wavelet_gis.workflows.save import Layers, write_pyramid_file
@@ -49,7 +49,7 @@ N_PYRAMIDS = 8
 #: By how much a level in random order is wider than the finer one, at least, and how many levels
 #: are built at most to reach a size.
 _GROWTH, _MOST_LEVELS = 1.08, 80
-#: Options that tell of the noise, beside its deviation.
+#: Options that describe the noise, beside its deviation.
 NOISE_OPTIONS = ("noise_range", "local_noise", "outliers")
 
 
@@ -164,7 +164,7 @@ def filter_pyramid(
         Which to take noise from; by default z.
     noise_range : float or "estimate"
         Distance at which the correlation of the noise has fallen to 1/e, in metres where the CRS
-        tells its unit, else in its own; 0 for white noise.
+        names its unit, else in its own; 0 for white noise.
     local_noise : bool
         Whether the noise differs by place, and is measured there.
     outliers : bool
@@ -181,7 +181,7 @@ def filter_pyramid(
     ------
     OptionError
         Nothing to do, a pyramid without levels, bounds in the wrong order, levels or channels that
-        are not there, what tells of noise without denoising; nothing has been computed yet.
+        are not there, options of noise without denoising; nothing has been computed yet.
     Cancelled
         ``progress`` returned False.
     """
@@ -259,7 +259,7 @@ def denoised(
     n_pyramids : int
         How many pyramids in random order are averaged; 0 thresholds the details of one.
     noise_range, local_noise, outliers
-        As for `wavelet_core.denoise`; the range in metres where the CRS tells its unit, else in
+        As for `wavelet_core.denoise`; the range in metres where the CRS names its unit, else in
         its own. Not with thresholds.
     finest : TriangleMesh, optional
         The pyramid's finest mesh, where it has been synthesised already.
@@ -359,13 +359,14 @@ def _in_file(noise: Noise, unit: float, metre: float) -> Noise:
 
 
 def _warn_of_roughness(source: str, channel: str, sigma: float, noise_range: RangeOption) -> None:
-    """Warn that noise and relief could not be told apart."""
-    kind = "white, since its range cannot be told from it either, and " if noise_range else ""
+    """Warn that noise and relief could not be separated."""
+    kind = "white, since its range cannot be found in it either, and " if noise_range else ""
     warn(
         TerrainWarning,
         "relief_as_fine_as_the_mesh",
-        "{name}: {channel} has relief as fine as the mesh, which cannot be told from noise; the "
-        "noise is taken to be {kind}that of the flattest places, {sigma:.4g} ({0} names another)",
+        "{name}: {channel} has relief as fine as the mesh, which cannot be separated from "
+        "noise; the noise is taken to be {kind}that of the flattest places, {sigma:.4g} ({0} names "
+        "another)",
         "denoise",
         stacklevel=4,
         name=source,
@@ -409,7 +410,7 @@ def chosen_gains(
     levels : (int, int), optional
         Keep the details of these levels only.
     metres : (float, float), optional
-        Instead: keep details of this size on the ground only, in metres where the CRS tells its
+        Instead: keep details of this size on the ground only, in metres where the CRS names its
         unit, else in its own. Levels in random order are bands of sizes.
 
     Raises
@@ -469,7 +470,7 @@ def with_sizes(
     geo : GeoPyramid
         What is filtered.
     metres : (float, float)
-        Smallest and largest size that stays, in metres where the CRS tells its unit, else in its
+        Smallest and largest size that stays, in metres where the CRS names its unit, else in its
         own.
     drop_coarse : bool
         Leave out what is larger than all details too.

@@ -36,7 +36,7 @@ __all__ = [
 
 Path = str | os.PathLike[str]
 
-#: Beyond it a plane is told to be untrue: the same error that a frame for degrees may have.
+#: Beyond it there is a warning that a plane is untrue: the error that a frame for degrees may have.
 LARGEST_SCALE_ERROR = MAX_DISTORTION
 
 

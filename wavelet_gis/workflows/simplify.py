@@ -10,13 +10,14 @@ import numpy as np
 from wavelet_core import Progress, Pyramid, TriangleMesh
 from wavelet_core import analyse as core_analyse
 from wavelet_core.mesh.location import surface_errors
+from wavelet_core.progress import part_of
 from wavelet_core.refinement.finish import FinishedTin, finished, finished_within
 from wavelet_core.refinement.refine import Round
 from wavelet_gis._memory import require_memory
 from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected, warn
-from wavelet_gis.progress import Clock, part_of
+from wavelet_gis.progress import Clock
 from wavelet_gis.workflows.extract import SurfaceErrors, measured
 from wavelet_gis.workflows.lines.errors import measured_along_lines
 from wavelet_gis.workflows.options import (

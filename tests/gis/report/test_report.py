@@ -17,7 +17,7 @@ from wavelet_core.accuracy.level_errors import level_errors
 from wavelet_gis.report.figures import report_data
 from wavelet_gis.report.page import report_page
 from wavelet_gis.report.pictures import histogram_chart, line_chart
-from wavelet_gis.workflows.read_off.levels import telling_levels
+from wavelet_gis.workflows.read_off.levels import default_levels
 from wavelet_gis.workflows.solver.quality import triangle_quality
 
 
@@ -137,7 +137,7 @@ def test_heights_are_in_the_file_s_unit(raster_record):
 
 
 def test_chosen_levels_go_from_fine_to_coarse(raster_record):
-    levels = telling_levels(raster_record)
+    levels = default_levels(raster_record)
     assert levels[-1] == 0
     assert levels == sorted(levels, reverse=True)
     assert list(report_data(raster_record, [2, 1]).errors) == [2, 1]

@@ -108,7 +108,7 @@ def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
     import threading
     import time
 
-    from terrain_wavelets.plugin.qgis_io.patience import computed
+    from terrain_wavelets.plugin.qgis_io.background import computed
 
     from wavelet_core.errors import Cancelled
 
@@ -132,7 +132,7 @@ def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
 
 
 def test_what_is_computed_comes_back_with_its_warnings_notes_and_errors(qgis):
-    from terrain_wavelets.plugin.qgis_io.patience import computed
+    from terrain_wavelets.plugin.qgis_io.background import computed
     from terrain_wavelets.plugin.ui.warning_log import shown_in
 
     from wavelet_core.errors import MeshError
@@ -143,7 +143,7 @@ def test_what_is_computed_comes_back_with_its_warnings_notes_and_errors(qgis):
 
     def work(work):
         warn(TerrainWarning, "odd", "this is odd")
-        work.teller(log.pushInfo)("begun")
+        work.in_log(log.pushInfo)("begun")
         assert work.progress(0.5)
         return 7
 

@@ -9,7 +9,7 @@ from ..._validate import FloatArray, IntArray
 from ..undecimated import UndecimatedBank
 from .white import NORMAL_MAD
 
-#: Vertices of a block of the map that tell the noise there, the width of the blur over blocks,
+#: Vertices of a block of the map that give the noise there, the width of the blur over blocks,
 #: and what the blurred deviation of white noise varies by, times the root of that number.
 VERTICES_OF_BLOCK, BLUR_OF_BLOCKS, DEVIATION_OF_BLOCK = 25, 0.5, 0.9
 

@@ -13,7 +13,7 @@ from .white import NORMAL_MAD, correlated_noise
 N_SCALES, SHARE_FLATTER = 3, 0.5
 #: The share of the vertices that are the flattest places: noise of one deviation is the same there.
 SHARE_FLATTEST = 0.05
-#: Share of the vertices, the flatter ones, that tell how the finest details grow with relief.
+#: Share of the vertices, the flatter ones, that show how the finest details grow with relief.
 SHARE_SLOPED = 0.6
 #: Powers of the coarser energy with which they may do so.
 POWERS_OF_RELIEF = (0.5, 0.75, 1.0)

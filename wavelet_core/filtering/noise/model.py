@@ -21,7 +21,7 @@ from .white import check_sigma, correlated_noise, estimate_noise, noise_columns
 #: Where the deviation in the flattest places is less than these parts of that in the flatter half,
 #: of white noise and of correlated, relief as fine as the mesh was taken for noise.
 STEADY_WHITE, STEADY_CORRELATED = 0.9, 0.8
-#: Fewer vertices than this do not tell relief from noise.
+#: With fewer vertices than this, relief cannot be separated from noise.
 LEAST_VERTICES = 2_000
 
 RangeOption = float | Literal["estimate"]
@@ -49,8 +49,8 @@ class Noise:
     n_standing_out : int
         Values that would be outliers, had they been asked for; they are still there.
     is_rough : bool
-        Whether relief as fine as the mesh cannot be told from noise: the deviation is then that of
-        the flattest places, and noise of unknown range is taken for white.
+        Whether relief as fine as the mesh cannot be separated from noise: the deviation is then
+        that of the flattest places, and noise of unknown range is taken for white.
     """
 
     sigma: float
@@ -134,7 +134,7 @@ def noise_of(
     sigma : float, optional
         Standard deviation of the noise; by default estimated, and no less than what rounding to
         the step of the values takes, step / sqrt(6). Where the flattest places hold less than
-        others, relief as fine as the mesh is among it, and those tell.
+        others, relief as fine as the mesh is among it, and those decide.
     noise_range : float or "estimate"
         Distance at which the correlation of the noise has fallen to 1/e; 0 for white noise.
     local_noise : bool

@@ -64,7 +64,7 @@ def add_inputs_argument(parser: argparse.ArgumentParser, others: str = "") -> No
     parser.add_argument("input", nargs="+", help=f"{others}{INPUTS}{SEVERAL}")
 
 
-#: What tells how an input is read.
+#: Options of how an input is read.
 _READING = (
     "layer",
     "z_field",
@@ -149,7 +149,7 @@ def add_point_arguments(group: argparse._ArgumentGroup) -> None:
 
 
 def add_input_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add what tells how a DEM or a LAS file is read."""
+    """Add the options of how a DEM or a LAS file is read."""
     group = parser.add_argument_group("input")
     add_raster_arguments(group)
     add_point_arguments(group)

@@ -138,7 +138,7 @@ def described(layout: LasLayout, name: str, description: str) -> LasLayout:
     known = b"" if at is None else layout.block[layout.vlrs[at].data_start : layout.vlrs[at].end]
     known = known[: len(known) // _DESCRIPTION * _DESCRIPTION]
     unnamed = layout.record_length - RECORD_LENGTHS[layout.point_format] - _described_bytes(known)
-    if unnamed > 0:  # extra bytes that no record tells of come before the new ones
+    if unnamed > 0:  # extra bytes that no record describes come before the new ones
         known += b"".join(
             _description(0, min(255, unnamed - k), b"", b"") for k in range(0, unnamed, 255)
         )
@@ -156,7 +156,7 @@ def described(layout: LasLayout, name: str, description: str) -> LasLayout:
 def with_counts(
     block: bytes, cloud: PointCloud, return_numbers: NDArray[np.integer] | None
 ) -> bytes:
-    """Return the block with the number of points, their returns and their extent told anew.
+    """Return the block with the number, returns and extent of the points brought up to date.
 
     Parameters
     ----------
@@ -167,21 +167,21 @@ def with_counts(
     return_numbers : (n_points,) integers, optional
         Of the points, counted from 1.
     """
-    told, minor, n_points = bytearray(block), block[25], cloud.n_points
+    changed, minor, n_points = bytearray(block), block[25], cloud.n_points
     by_return = np.zeros(15, dtype=np.int64)
     if return_numbers is not None:
         by_return = np.bincount(return_numbers, minlength=16)[1:16]
     is_legacy = minor < 4 or struct.unpack_from("<I", block, SIZES + 13)[0] != 0
     if is_legacy and n_points < _LEGACY_LIMIT:
-        struct.pack_into("<I", told, SIZES + 13, n_points)
-        struct.pack_into("<5I", told, RETURNS, *by_return[:5].tolist())
+        struct.pack_into("<I", changed, SIZES + 13, n_points)
+        struct.pack_into("<5I", changed, RETURNS, *by_return[:5].tolist())
     if minor >= 4:
-        struct.pack_into("<Q", told, POINT_COUNT, n_points)
-        struct.pack_into("<15Q", told, LONG_RETURNS, *by_return.tolist())
+        struct.pack_into("<Q", changed, POINT_COUNT, n_points)
+        struct.pack_into("<15Q", changed, LONG_RETURNS, *by_return.tolist())
     extent = np.array([cloud.integers.max(axis=0), cloud.integers.min(axis=0)])
     ends = np.sort(extent * cloud.scales + cloud.offsets, axis=0)[::-1]  # a scale may be negative
-    struct.pack_into("<6d", told, SCALING + 48, *ends.T.ravel().tolist())
-    return bytes(told)
+    struct.pack_into("<6d", changed, SCALING + 48, *ends.T.ravel().tolist())
+    return bytes(changed)
 
 
 def moved(block: bytes, layout: LasLayout, tail: bytes, was_at: TailPlace, is_at: int) -> bytes:
@@ -200,17 +200,17 @@ def moved(block: bytes, layout: LasLayout, tail: bytes, was_at: TailPlace, is_at
     is_at : int
         Offset of `tail` in the file that is written.
     """
-    told = bytearray(block)
+    changed = bytearray(block)
     if layout.minor >= 4:
         start, announced = struct.unpack_from("<QI", block, EVLRS)
         first = 0 if was_at is None else start - was_at
         if announced and start and (was_at != is_at or first >= len(tail)):
             n_evlrs = len(list(records_of(tail, first, announced, extended=True)))
-            struct.pack_into("<QI", told, EVLRS, is_at + first if n_evlrs else 0, n_evlrs)
+            struct.pack_into("<QI", changed, EVLRS, is_at + first if n_evlrs else 0, n_evlrs)
     if layout.waveform_start and was_at is not None and was_at != is_at:
         start = layout.waveform_start - was_at
-        struct.pack_into("<Q", told, WAVEFORM, is_at + start if start < len(tail) else 0)
-    return bytes(told)
+        struct.pack_into("<Q", changed, WAVEFORM, is_at + start if start < len(tail) else 0)
+    return bytes(changed)
 
 
 def _with_vlrs(

@@ -73,7 +73,7 @@ def read_cloud(
     bbox: tuple[float, float, float, float] | None = None,
     resolution: float | None = None,
 ) -> tuple[PointCloud, Georeference]:
-    """Return the chosen points of a LAS or LAZ file, and what it tells of their coordinates.
+    """Return the chosen points of a LAS or LAZ file, and their georeference.
 
     Parameters
     ----------
@@ -322,7 +322,7 @@ def laz_job(name: str, layout: LasLayout) -> laz_decoder.Job:
 
 @contextmanager
 def decoding(name: str) -> Iterator[None]:
-    """Tell of what the decoder refuses as of any other damaged file."""
+    """Report what the decoder refuses as any other damaged file is reported."""
     try:
         yield
     except laz_decoder.DecodeError as error:
@@ -333,7 +333,7 @@ def decoding(name: str) -> Iterator[None]:
 
 
 def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> None:
-    """Refuse coordinates that no CRS has, and tell of a header that claims others than there are.
+    """Refuse coordinates that no CRS has, and warn of a header that claims others than there are.
 
     A header with other bounds than its points is how a damaged scale or offset shows.
     """
@@ -348,16 +348,16 @@ def _check_extent(name: str, layout: LasLayout, points: PackedPointRecord) -> No
             )
         # Many writers round the bounds, to a unit in the last place or to the next number.
         slack = 1.5 * abs(layout.scales[k]) + 1e-9 * max(-low, high) + 5e-4 * (high - low)
-        told = layout.low[k], layout.high[k]
-        if not (abs(told[0] - low) <= slack and abs(told[1] - high) <= slack):
+        claimed = layout.low[k], layout.high[k]
+        if not (abs(claimed[0] - low) <= slack and abs(claimed[1] - high) <= slack):
             _warn(
                 "header_extent",
-                "{name}: the header says that {axis} runs from {told[0]:.10g} to {told[1]:.10g}, "
-                "the points run from {found[0]:.10g} to {found[1]:.10g}; if that is no old "
-                "mistake, the file is damaged",
+                "{name}: the header says that {axis} runs from {claimed[0]:.10g} to "
+                "{claimed[1]:.10g}, the points run from {found[0]:.10g} to {found[1]:.10g}; if "
+                "that is no old mistake, the file is damaged",
                 name=name,
                 axis=axis,
-                told=told,
+                claimed=claimed,
                 found=(low, high),
             )
 

@@ -21,14 +21,14 @@ __all__ = ["read_clouds"]
 def read_clouds(
     paths: Sequence[str], *, any_crs: bool = False, any_unit: bool = False, **options: Any
 ) -> tuple[PointCloud, Georeference]:
-    """Return the points of several files as one cloud, and what they tell of their coordinates.
+    """Return the points of several files as one cloud, and their georeference.
 
     Parameters
     ----------
     paths : sequence of str
         Two or more; the first gives header and VLRs.
     any_crs, any_unit : bool
-        Whether the CRS, or the unit of z, is told otherwise and need not agree.
+        Whether the CRS, or the unit of z, is given otherwise and need not agree.
     **options
         See `wavelet_gis.io.las.read_cloud`. Classes are chosen in each file, of which some may
         have none; heights above the ground are those above the ground of the same file.

@@ -121,7 +121,7 @@ def _landxml_unit(wkt: str, path: str | os.PathLike[str]) -> str:
 
 
 def _metres_in_horizontal_unit(wkt: str) -> float:
-    """Return the length in which a definition counts x and y; 1 where it tells none.
+    """Return the length in which a definition counts x and y; 1 where it gives none.
 
     Of a compound CRS it is the projected part that counts.
     """

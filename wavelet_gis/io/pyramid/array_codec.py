@@ -61,7 +61,7 @@ LZMA_FILTERS = [
 #: LZMA takes so many bytes at a time, so that it can be stopped; it makes the same of them.
 _PIECE_BYTES = 1 << 17
 
-#: Seconds after which a thread that waits for others tells what they have done.
+#: Seconds after which a thread that waits for others reports what they have done.
 _LOOK = 0.1
 
 #: Rows by which the filter of an array is chosen.
@@ -102,20 +102,20 @@ FILTERS = {
 
 
 #: Takes a number of bytes.
-Tell = Callable[[int], None]
+Packed = Callable[[int], None]
 
 
 class Tally:
-    """The bytes that several threads have compressed, told by the one that waits for them.
+    """The bytes that several threads have compressed, reported by the one that waits for them.
 
     Parameters
     ----------
-    tell : callable, optional
+    packed : callable, optional
         Called with those since it was called before.
     """
 
-    def __init__(self, tell: Tell | None = None) -> None:
-        self._tell = tell
+    def __init__(self, packed: Packed | None = None) -> None:
+        self._packed = packed
         self._n_bytes = 0
         self._lock = threading.Lock()
         self.is_stopped = False
@@ -125,12 +125,12 @@ class Tally:
         with self._lock:
             self._n_bytes += n_bytes
 
-    def tell(self) -> None:
-        """Tell how many there are."""
+    def report(self) -> None:
+        """Say how many there are since it was asked before."""
         with self._lock:
             n_bytes, self._n_bytes = self._n_bytes, 0
-        if self._tell is not None:
-            self._tell(n_bytes)
+        if self._packed is not None:
+            self._packed(n_bytes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,21 +230,21 @@ def header_of(array: NDArray[Any]) -> ArrayHeader:
 
 
 def closest_header(
-    array: NDArray[Any], pool: ThreadPoolExecutor | None = None, tell: Tell | None = None
+    array: NDArray[Any], pool: ThreadPoolExecutor | None = None, packed: Packed | None = None
 ) -> ArrayHeader:
     """Return the header under which an array takes the fewest bytes, judged by part of it.
 
     Parameters
     ----------
     array : integers, floats or booleans, one or two dimensions
-    pool, tell : optional
+    pool, packed : optional
         As for `encode_array`.
     """
     header = header_of(array)
     sample = _sample(array)
     if not sample.nbytes:
         return header
-    tally = Tally(tell)
+    tally = Tally(packed)
 
     def size(name: str) -> int:
         return len(_pack(sample, replace(header, filter=name), tally))
@@ -267,7 +267,7 @@ def encode_array(
     array: NDArray[Any],
     pool: ThreadPoolExecutor | None = None,
     header: ArrayHeader | None = None,
-    tell: Tell | None = None,
+    packed: Packed | None = None,
 ) -> Iterator[bytes]:
     """Yield the compressed chunks of an array, in order.
 
@@ -279,14 +279,14 @@ def encode_array(
         Compresses several chunks at once; the result is the same.
     header : ArrayHeader, optional
         Under which; by default that of `header_of`.
-    tell : callable, optional
+    packed : callable, optional
         Called, in the thread that takes the chunks, with the bytes that were compressed since it
         was called before. It may raise, to stop.
     """
     header = header_of(array) if header is None else header
     starts = range(0, header.shape[0], header.chunk_rows) if header.n_bytes else range(0)
     blocks = (array[start : start + header.chunk_rows] for start in starts)
-    tally = Tally(tell)
+    tally = Tally(packed)
     return _in_order(lambda block: _pack(block, header, tally), blocks, pool, tally)
 
 
@@ -491,7 +491,7 @@ def _in_order(
     if pool is None:
         for job in jobs:
             result = work(job)
-            tally.tell()
+            tally.report()
             yield result
         return
     remaining = iter(jobs)
@@ -500,10 +500,10 @@ def _in_order(
         while waiting:
             while not waiting[0].done():
                 wait(waiting[:1], timeout=_LOOK)
-                tally.tell()
+                tally.report()
             yield waiting.pop(0).result()
             waiting.extend(pool.submit(work, job) for job in islice(remaining, 1))
-        tally.tell()
+        tally.report()
     finally:  # who stops before the end need not wait for the others
         tally.is_stopped = True
         for job in waiting:

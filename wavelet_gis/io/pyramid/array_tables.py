@@ -70,7 +70,7 @@ def write_arrays(
     connection: sqlite3.Connection,
     arrays: Mapping[str, NDArray[Any]],
     pool: ThreadPoolExecutor,
-    tell: Callable[[int], None],
+    packed: Callable[[int], None],
 ) -> None:
     """Write arrays, each as small as it can be.
 
@@ -82,11 +82,11 @@ def write_arrays(
         By name.
     pool : ThreadPoolExecutor
         Compresses.
-    tell : callable
+    packed : callable
         Called with bytes that were compressed; those of an array are `work_of` it, or a few more.
     """
     for name, array in arrays.items():
-        header, chunks = _smallest(array, pool, tell)
+        header, chunks = _smallest(array, pool, packed)
         cursor = connection.execute(
             "INSERT INTO wavelet_arrays (name, dtype, shape, filter, chunk_rows, checksum) "
             "VALUES (?,?,?,?,?,?)",
@@ -106,18 +106,18 @@ def write_arrays(
 
 
 def _smallest(
-    array: NDArray[Any], pool: ThreadPoolExecutor, tell: Callable[[int], None]
+    array: NDArray[Any], pool: ThreadPoolExecutor, packed: Callable[[int], None]
 ) -> tuple[ArrayHeader, Iterable[bytes]]:
     """Return the header of an array and its chunks, never smaller than a reader believes."""
-    header = closest_header(array, pool, tell)
-    chunks = encode_array(array, pool, header, tell)
+    header = closest_header(array, pool, packed)
+    chunks = encode_array(array, pool, header, packed)
     if not FILTERS[header.filter].is_lzma:
         return header, chunks
     kept = list(chunks)
     if header.n_bytes <= MAX_EXPANSION * sum(map(len, kept)):
         return header, kept
     plain = header_of(array)
-    return plain, encode_array(array, pool, plain, tell)
+    return plain, encode_array(array, pool, plain, packed)
 
 
 def read_entries(connection: sqlite3.Connection, *, with_checksums: bool) -> dict[str, Entry]:
@@ -293,7 +293,7 @@ class WrittenArrays(StoredArrays):
         As for `StoredArrays`.
     originals : mapping of str to array
         What was written.
-    tell : callable
+    verified : callable
         Called with the bytes of each piece that is verified.
     """
 
@@ -304,19 +304,19 @@ class WrittenArrays(StoredArrays):
         entries: dict[str, Entry],
         file_bytes: int,
         originals: Mapping[str, NDArray[Any]],
-        tell: Callable[[int], None],
+        verified: Callable[[int], None],
     ) -> None:
         super().__init__(connection, pool, entries, file_bytes)
         self._originals = originals
-        self._tell = tell
+        self._verified = verified
 
     def _read(self, name: str, entry: Entry) -> NDArray[Any]:
         self._checked_size(entry)
         blocks = decode_blocks(entry.header, self._chunks(entry.array_id), self._pool)
-        self._compare(entry, array_checksum(entry.header, self._told(blocks)))
+        self._compare(entry, array_checksum(entry.header, self._watched(blocks)))
         return self._originals[name].astype(entry.header.dtype, copy=False)
 
-    def _told(self, blocks: Iterable[NDArray[Any]]) -> Iterator[NDArray[Any]]:
+    def _watched(self, blocks: Iterable[NDArray[Any]]) -> Iterator[NDArray[Any]]:
         for block in blocks:
             yield block
-            self._tell(block.nbytes)
+            self._verified(block.nbytes)

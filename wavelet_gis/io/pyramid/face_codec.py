@@ -1,10 +1,10 @@
 """The faces of points as the few edges that are none of their Delaunay triangulation.
 
-Whoever has the points has, of each, the nearest others, and can tell which of them it is joined to
+Whoever has the points has, of each, the nearest others, and knows which of them it is joined to
 in a Delaunay triangulation: those with which it lies on a circle that holds no other point. Every
 such pair is asked about, by classes of how clear the answer is, and nearly all answers are the
-expected one. Edges beyond the nearest points, and triangles of edges that are no faces, are told
-one by one. Any triangulation can be told so; one that is not Delaunay takes more bytes.
+expected one. Edges beyond the nearest points, and triangles of edges that are no faces, are
+listed one by one. Any triangulation can be stored so; one that is not Delaunay takes more bytes.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _OF_EDGES, _OF_PAIRS = 0.1, 0.7
 
 
 class FaceRecord(NamedTuple):
-    """Faces without what the points tell.
+    """Faces without what follows from the points.
 
     answers : tuple of uint8 arrays, one a class: is the pair joined?
     far : (n, 2) int32, edges between points of which neither is among the other's nearest
@@ -96,7 +96,7 @@ def decode_faces(
     Raises
     ------
     PyramidError
-        It tells no faces on these points.
+        It describes no faces on these points.
     """
     _require(_can_be_encoded(points), "points that have no faces")
     x, y = _local(points)

@@ -1,4 +1,4 @@
-"""The tables of a pyramid file that tell of it in words and figures: metadata, levels, checksums.
+"""The tables of a pyramid file that describe it in words and figures: metadata, levels, checksums.
 
 Every array has a checksum in its row, and the checksums of all rows, of the levels and of each
 piece of metadata are among the metadata. Files of before there were any (which do not name them in
@@ -43,7 +43,7 @@ __all__ = [
 #: reader can read says so: it has the version before.
 FORMAT_VERSION = 3
 
-#: The versions that are read. In the first, no pyramid was told by a record, and what rounding
+#: The versions that are read. In the first, no pyramid was kept as a record, and what rounding
 #: loses was stored in the place of the input's numbers; in the second, no raster had a palette.
 FORMATS_READ = (1, 2, 3)
 
@@ -199,7 +199,7 @@ def write_level_rows(connection: sqlite3.Connection, geo: GeoPyramid) -> None:
 
 def read_level_rows(connection: sqlite3.Connection) -> tuple[LevelErrors, ...]:
     """Return the figures of the levels in the order of their rows; NaN where there are none."""
-    # What is no number is not even fetched; it may be long, and would be told to nobody.
+    # What is no number is not even fetched; it may be long, and nobody would see it.
     columns = ", ".join(
         f"CASE WHEN TYPEOF({name}) IN ('integer', 'real') THEN {name} END"
         for name in _LEVEL_COLUMNS
@@ -225,7 +225,7 @@ def _figure(value: object, kind: type) -> Any:
 
 
 def require_tables(connection: sqlite3.Connection) -> bool:
-    """Raise unless the tables are there and hold what they say; tell if there are checksums."""
+    """Return whether there are checksums; raise unless the tables hold what they say."""
     if missing := set(TABLES) - table_names(connection):
         raise InputFileError(
             f"this GeoPackage holds no wavelet pyramid (no table {', '.join(sorted(missing))}); "
@@ -255,7 +255,7 @@ def _read_texts(connection: sqlite3.Connection) -> dict[str, str]:
 
 
 def _require_format(metadata: Fields) -> bool:
-    """Raise unless the format is one that this program reads; tell if it declares checksums."""
+    """Return whether it declares checksums; raise unless this program reads the format."""
     format_ = metadata.get("format")
     if not isinstance(format_, dict) or format_.get("name") != FORMAT_NAME:
         raise InputFileError("this GeoPackage is no wavelet pyramid of ours.")

@@ -24,7 +24,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from wavelet_core import Cancelled, Progress, PyramidError, WaveletError
-from wavelet_core.progress import report
+from wavelet_core.progress import part_of, report
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.geopackage import (
     PAGE_BYTES,
@@ -61,7 +61,6 @@ from wavelet_gis.io.pyramid.pyramid_parts import (
 from wavelet_gis.io.pyramid.source_parts import check_source
 from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.progress import part_of
 
 __all__ = [
     "FORMATS_READ",
@@ -229,15 +228,15 @@ def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def _share_of(total: int, progress: Progress | None) -> Callable[[int], None]:
-    """Return a function that takes numbers of bytes and tells the share of all that are done."""
+    """Return a function that takes numbers of bytes and reports the share of all that are done."""
     done = 0
 
-    def tell(n_bytes: int) -> None:
+    def count(n_bytes: int) -> None:
         nonlocal done
         done += n_bytes
         report(progress, min(done / max(total, 1), 1.0), _CANCELLED)
 
-    return tell
+    return count
 
 
 def _read_back(
@@ -248,14 +247,14 @@ def _read_back(
     progress: Progress | None,
 ) -> None:
     """Have the reader take a file that was just written, without room for its arrays."""
-    tell = _share_of(total, part_of(progress, _SHARE_OF_WRITING, 1.0))
+    verified = _share_of(total, part_of(progress, _SHARE_OF_WRITING, 1.0))
     try:
         with open_untrusted(path) as connection, _pool() as pool:
             contents = Contents(connection)
             size = os.path.getsize(path)
             pyramid_from_parts(
                 contents,
-                WrittenArrays(connection, pool, contents.entries, size, arrays, tell),
+                WrittenArrays(connection, pool, contents.entries, size, arrays, verified),
                 geo.pyramid,
             )
     except Cancelled:

@@ -1,6 +1,6 @@
 """A pyramid as metadata and arrays, and back.
 
-A pyramid that follows from its input is told by that and by few symbols
+A pyramid that follows from its input is kept as that and few symbols
 (`wavelet_gis.io.pyramid.record_parts`), any other by the arrays of its steps.
 """
 
@@ -107,7 +107,7 @@ def pyramid_to_parts(
     of_record = part_of(progress, 0.0, _SHARE_OF_RECORD)
     record = None if mesh is None else record_of(pyramid, mesh, of_record)
     if record is None:
-        told = None
+        recorded = None
         arrays.update(placed_arrays(pyramid) or listed_arrays(pyramid))
         has_cells = _is_plan_of_cells(pyramid, geo.origin, geo.frame)
         if has_cells:
@@ -115,7 +115,7 @@ def pyramid_to_parts(
         if pyramid.part is not None:
             arrays["integrals"] = pyramid.part.integrals
     else:
-        told, record_arrays = record_to_parts(record)
+        recorded, record_arrays = record_to_parts(record)
         arrays.update(record_arrays)
         if geo.origin.points is not None:
             of_faces, face_arrays = faces_to_parts(
@@ -123,7 +123,7 @@ def pyramid_to_parts(
                 pyramid.faces,
                 part_of(progress, _SHARE_OF_RECORD, 1.0),
             )
-            told.update(of_faces)
+            recorded.update(of_faces)
             arrays.update(face_arrays)
     if pyramid.locked is not None:
         arrays["locked"] = pyramid.locked
@@ -159,8 +159,8 @@ def pyramid_to_parts(
         metadata["pyramid"]["steps"] = _PLACES
     if has_cells:
         metadata["pyramid"]["plan"] = _CELLS
-    if told is not None:
-        metadata["record"] = told
+    if recorded is not None:
+        metadata["record"] = recorded
     if geo.notes:
         metadata["notes"] = [note.to_dict() for note in geo.notes]
     return metadata, arrays
@@ -484,7 +484,7 @@ def _placed_steps(
     if not is_sound:
         raise PyramidError("a finest level that is no surface; the file is damaged.")
     _require_surface(TriangleMesh(np.insert(horizontal, 2, 0.0, axis=1), faces))
-    told = [
+    moves = [
         (
             arrays.get(_name_of(level, "odd"), "<i4", 1),
             arrays.get(_name_of(level, "places"), "|u1", 1),
@@ -495,7 +495,7 @@ def _placed_steps(
     collapses = []
     n_taken = 0
     with np.errstate(all="ignore"):
-        for collapse in steps_at_places(horizontal, faces, mask, tolerance, told[::-1]):
+        for collapse in steps_at_places(horizontal, faces, mask, tolerance, moves[::-1]):
             collapses.append(collapse)
             n_taken += len(collapse.odd)
             report(progress, min(n_taken / len(horizontal), 1.0))
@@ -520,9 +520,9 @@ def _recorded(
         faces = written.faces
         arrays.all_named("faces")  # verified
     elif origin.points is not None:
-        told, places = contents.metadata.fields("record"), origin.points.kept_places
+        fields, places = contents.metadata.fields("record"), origin.points.kept_places
         of_faces = part_of(progress, 0.0, _SHARE_OF_FACES)
-        faces = faces_from_parts(told, arrays, places, of_faces)
+        faces = faces_from_parts(fields, arrays, places, of_faces)
     mesh = origin.kept_mesh(frame, faces)
     if mesh is None:
         raise PyramidError(_NO_INPUT)
@@ -583,7 +583,7 @@ def _locked_from(described: Fields, arrays: StoredArrays) -> NDArray[np.bool_] |
 
 
 def _stop_from(described: Fields) -> StopRecord | None:
-    """Return why the analysis ended; files of before do not tell."""
+    """Return why the analysis ended; files of before do not say."""
     if described.get("stop") is None:
         return None
     stored = described.fields("stop")

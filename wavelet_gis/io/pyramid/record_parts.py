@@ -1,6 +1,6 @@
 """The record of a pyramid as JSON and plain arrays, and the record again.
 
-What `wavelet_core.lifting.recorded` tells of a pyramid goes into the arrays
+What `wavelet_core.lifting.recorded` records of a pyramid goes into the arrays
 ``parts/K/going`` (bits), ``parts/K/targets`` (two to a byte) and, for every part but the first,
 ``parts/K/ids``, ``faces``, ``heights``, ``integrals`` and ``unchanged``; the faces of points into
 ``faces/answers``, ``far`` and ``holes``. See docs/reference/format.md.
@@ -40,7 +40,7 @@ __all__ = [
     "record_to_parts",
 ]
 
-#: Places of targets from here on are told in an array of their own.
+#: Places of targets from here on go into an array of their own.
 BEYOND = 15
 
 #: Parts of one record: each has at most a 64th of the vertices of the one before.
@@ -102,7 +102,7 @@ def faces_to_parts(
     faces: NDArray[np.integer],
     progress: Progress | None = None,
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """Return fields and arrays that tell the faces of points; see `face_codec`.
+    """Return fields and arrays that hold the faces of points; see `face_codec`.
 
     Parameters
     ----------

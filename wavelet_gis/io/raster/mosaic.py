@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_gis._memory import require_bytes
 from wavelet_gis.errors import InputFileError, RasterWarning
-from wavelet_gis.io.raster.memory import require_memory
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.notes import note, warn
 
@@ -50,7 +50,7 @@ def mosaic(names: Sequence[str], dems: Sequence[Dem]) -> Dem:
     shapes = np.array([dem.geometry.shape for dem in dems])
     low, high = corners.min(axis=0), (corners + shapes).max(axis=0)
     n_rows, n_columns = (int(side) for side in high - low)
-    require_memory(
+    require_bytes(
         n_rows * n_columns * (first.values.itemsize + 2),
         f"{names[0]} and {len(names) - 1} more",
         f"{n_rows} x {n_columns} cells",

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_gis._memory import BYTES_TO_ANALYSE_A_CELL, BYTES_TO_READ_A_CELL, require_bytes
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.errors import InputFileError, RasterWarning
 from wavelet_gis.io.libraries import silent_libraries
 from wavelet_gis.io.names import file_of, gdal_path
-from wavelet_gis.io.raster.memory import BYTES_PER_CELL, BYTES_PER_VERTEX, require_memory
 from wavelet_gis.io.raster.nodata import NO_TAG, implausible_cells, warn_of_doubts
 from wavelet_gis.io.raster.remote import NO_NETWORK, remote_reference
 from wavelet_gis.model.dem import Dem, GridGeometry, require_sound
@@ -107,7 +107,7 @@ def read_dem(
             remote=remote,
         )
     try:
-        # A raster without georeference is told of by our own warning, once.
+        # Of a raster without georeference our own warning speaks, once.
         settings = NO_NETWORK if offline else {}
         with warnings.catch_warnings(), silent_libraries() as said, rasterio.Env(**settings):
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
@@ -152,10 +152,10 @@ def _read_band(
 ) -> tuple[Dem, Georeference]:
     if dataset.count == 0:
         names = dataset.subdatasets
-        told = ", ".join(names[:4]) + (", ..." if len(names) > 4 else "")
+        listed = ", ".join(names[:4]) + (", ..." if len(names) > 4 else "")
         raise InputFileError(
             f"{path}: the file holds {len(names)} sub-datasets and no band of its own; name one "
-            f"of them as the input{': ' if told else ''}{told}."
+            f"of them as the input{': ' if listed else ''}{listed}."
         )
     if band is None and dataset.count > 1:
         raise InputFileError(
@@ -175,13 +175,14 @@ def _read_band(
             f"{path}: band {index} holds {dtype} values; elevations must be real numbers."
         )
     row, column, height, width = cells or (0, 0, dataset.height, dataset.width)
-    require_memory(height * width * BYTES_PER_CELL, os.fspath(path), f"{height} x {width} cells")
+    name = os.fspath(path)
+    require_bytes(height * width * BYTES_TO_READ_A_CELL, name, f"{height} x {width} cells")
     window = ((row, row + height), (column, column + width))
     values = dataset.read(index, window=window)
     whole = GridGeometry((dataset.height, dataset.width), tuple(dataset.transform)[:6])
     valid = _valid_cells(dataset, index, values, nodata, path, window)
     n_valid = int(np.count_nonzero(valid))
-    require_memory(n_valid * BYTES_PER_VERTEX, os.fspath(path), f"{n_valid:,} cells with data")
+    require_bytes(n_valid * BYTES_TO_ANALYSE_A_CELL, name, f"{n_valid:,} cells with data")
     dem = Dem(
         values=values,
         valid=valid,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["write_bands", "write_cog", "write_dem"]
 
-#: Lossless compressions; a lossy one would break what it is told to keep.
+#: Lossless compressions; a lossy one would break what is to be kept.
 _LOSSLESS = {"lzw", "deflate", "packbits", "zstd", "lzma"}
 
 #: Names of tags that rasterio's ``update_tags`` takes for its own arguments.
@@ -175,7 +175,7 @@ def _complaints_about(
 
     try:
         with warnings.catch_warnings(), silent_libraries():
-            # A raster without georeference was told of when it was read.
+            # Of a raster without georeference there was a warning when it was read.
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             yield
     # GDAL's own errors reach us bare where rasterio only hands a call through.
@@ -245,7 +245,7 @@ def _takeable(tags: object) -> dict[str, str]:
 def _write_copy(path: str | os.PathLike[str], profile: dict[str, Any], dem: Dem) -> None:
     """Write through memory, for the formats that GDAL can only copy to.
 
-    Some of them lose what they cannot hold without a word; reading back tells.
+    Some of them lose what they cannot hold without a word; reading back shows it.
     """
     from rasterio.io import MemoryFile
     from rasterio.shutil import copy

@@ -17,14 +17,14 @@ __all__ = ["read_dems"]
 def read_dems(
     paths: Sequence[str], *, any_crs: bool = False, any_unit: bool = False, **options: Any
 ) -> tuple[Dem, Georeference]:
-    """Return the DEM that several rasters are parts of, and what they tell of its coordinates.
+    """Return the DEM that several rasters are parts of, and its georeference.
 
     Parameters
     ----------
     paths : sequence of str
         Two or more. Where they overlap the first with data counts; it also gives the profile.
     any_crs, any_unit : bool
-        Whether the CRS, or the unit of z, is told otherwise and need not agree.
+        Whether the CRS, or the unit of z, is given otherwise and need not agree.
     **options
         See `wavelet_gis.io.raster.read_dem`.
 

@@ -40,7 +40,7 @@ def read_point_table(path: str | os.PathLike[str], attributes: tuple[str, ...] =
     Parameters
     ----------
     path : path
-        Columns are apart by commas, semicolons, tabs or blanks. A first line of names tells which
+        Columns are apart by commas, semicolons, tabs or blanks. A first line of names says which
         they are; without one the first three are x, y and z.
     attributes : tuple of str
         Names of the columns to keep beside x, y and z.

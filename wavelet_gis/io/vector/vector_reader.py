@@ -93,7 +93,7 @@ def read_shapes(
 
     name = os.fspath(path)
     try:
-        with silent_libraries() as said, warnings.catch_warnings(record=True) as told:
+        with silent_libraries() as said, warnings.catch_warnings(record=True) as raised:
             warnings.simplefilter("always")
             if layer is None:
                 layer = _only_layer(name, pyogrio.list_layers(name))
@@ -109,7 +109,7 @@ def read_shapes(
         raise InputFileError(
             f"{name}: a shape of the layer {layer} is damaged ({reason}); get the file again."
         ) from error
-    said += [str(warning.message) for warning in told]
+    said += [str(warning.message) for warning in raised]
     if said:
         warn(
             LayerWarning,

@@ -64,7 +64,7 @@ class PointCloud:
         The other fields of the point records, to be given back untouched.
     header, evlrs : (n_bytes,) uint8
         The file up to its first point, and what is kept of what follows the last: extended VLRs,
-        waveform packets, bytes that nothing tells of.
+        waveform packets, bytes that nothing describes.
     evlrs_at : int or None
         Offset that `evlrs` had in the file; None where it begins with the first extended VLR.
     n_in_file : int

@@ -20,7 +20,7 @@ from wavelet_gis.notes import warn
 
 __all__ = ["CloudVertices", "cloud_mesh", "cloud_vertices"]
 
-#: Gaps that take more than this share of a cloud's area are told of.
+#: Gaps that take more than this share of a cloud's area are reported.
 TOLD_GAPS = 0.05
 
 

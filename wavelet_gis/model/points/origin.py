@@ -224,7 +224,7 @@ class CloudOrigin:
         ----------
         frame : LocalFrame
         faces : (n_faces, 3) int32
-            Of the mesh, which the points by themselves do not tell.
+            Of the mesh; they do not follow from the points alone.
         """
         kept = self.corrections
         if faces is None or kept is None:

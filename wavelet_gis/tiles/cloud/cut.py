@@ -129,7 +129,7 @@ def make_cut(folder: str, number: int) -> dict[str, Any]:
 
     Notes
     -----
-    As with pieces, files are written aside and renamed, the record last, and what is wrong is told
+    As with pieces, files are written aside and renamed, the record last, and what is wrong is noted
     in the record.
     """
     path = Path(folder) / PLAN

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from wavelet_core.errors import OptionError
 from wavelet_gis.crs.agreement import agreed
+from wavelet_gis.crs.frame import CoordinateSystem, Georeference, LocalFrame
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
@@ -93,8 +94,6 @@ def plan_of_clouds(
     CrsWarning
         What is odd about the CRS of a file, or that there is none.
     """
-    import shapely
-
     from wavelet_gis.crs.lookup import coordinate_system
 
     if not 1 <= levels <= 64:
@@ -107,73 +106,27 @@ def plan_of_clouds(
         )
     wavelets = checked_wavelets(wavelets)
     paths = [os.path.abspath(path) for path in files_of(data)]
-    for path in paths:
-        if suffix_of(path) not in CLOUD_SUFFIXES:
-            raise InputFileError(
-                f"{path}: {paths[0]} is a point cloud, this does not end in "
-                f"{any_of(CLOUD_SUFFIXES)}; name files of one kind."
-            )
-    heads = [read_head(path) for path in paths]
-    _require_alike(paths, heads)
+    heads = _heads(paths)
     places = [head.place for head in heads]
     for path, one in zip(paths, places, strict=True):
         warn_of_crs(path, one)
     place = agreed(paths, places, any_crs=bool(crs), any_unit=bool(vertical_unit))
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
-    name = joint_name(paths)
-    scales, offsets = heads[0].layout.scales, heads[0].layout.offsets
     low, high = _extents(paths, heads)
-    corners = np.array([[*low.min(axis=0), 0], [*high.max(axis=0), 0]])
-    x_ends, y_ends, _ = np.sort(corners * scales + offsets, axis=0).T.tolist()
-    corners[:, 2] = round((heads[0].layout.low[2] - offsets[2]) / scales[2])
-    require_plan(
-        name,
-        PointCloud(
-            corners.astype(np.int32),
-            np.array(scales),
-            np.array(offsets),
-        ),
-        system,
-    )
-    frame, unit = frame_of_bounds(
-        name,
-        system,
-        (x_ends[0], y_ends[0], x_ends[1], y_ends[1]),
-        vertical_unit or place.vertical_unit,
-        place.fault,
-    )
+    frame, unit = _frame(joint_name(paths), heads[0], low, high, system, place, vertical_unit)
     first_column, first_row = (int(value) for value in low.min(axis=0))
     last_column, last_row = (int(value) for value in high.max(axis=0))
     shape = (last_row - first_row + 1, last_column - first_column + 1)
-    steps = abs(scales[0]) * frame.x_scale, abs(scales[1]) * frame.y_scale
-    ratio = Fraction(steps[0] / steps[1]).limit_denominator(_LARGEST_TERM)
-    p, q = ratio.numerator, ratio.denominator
-    if not 1 <= p <= _LARGEST_TERM:
-        raise InputFileError(
-            f"{name}: x is stored in steps of {steps[0]:g} and y in steps of {steps[1]:g}; bring "
-            "them to like scales first (pdal translate --writers.las.scale_x and so on)."
-        )
+    scales, offsets = heads[0].layout.scales, heads[0].layout.offsets
+    ratio = _ratio(joint_name(paths), scales, frame)
     n_points = sum(head.layout.n_points for head in heads)
-    boxes = shapely.box(*(low * (p, q)).T, *(high * (p, q)).T)  # flight lines overlap
-    spacing = max(round(float(np.sqrt(shapely.union_all(boxes).area / n_points))), 1)
-    rows, columns = _ends(tile, shape, (scales[0], scales[1]), (p, q), spacing, n_points)
-    shortest = min(np.diff(rows).min() * q, np.diff(columns).min() * p)
-    files = [
-        SourceFile(
-            path,
-            int(low[k, 1]) - first_row,
-            int(low[k, 0]) - first_column,
-            int(high[k, 1] - low[k, 1]) + 1,
-            int(high[k, 0] - low[k, 0]) + 1,
-            os.stat(path).st_size,
-            os.stat(path).st_mtime_ns,
-        )
-        for k, path in enumerate(paths)
-    ]
-    x0, y0 = (offsets[k] + scales[k] * (first - 0.5) for k, first in
-              enumerate((first_column, first_row)))  # fmt: skip
+    spacing = _spacing(low, high, ratio, n_points)
+    rows, columns = _ends(tile, shape, (scales[0], scales[1]), ratio, spacing, n_points)
+    shortest = min(np.diff(rows).min() * ratio[1], np.diff(columns).min() * ratio[0])
+    x0 = offsets[0] + scales[0] * (first_column - 0.5)
+    y0 = offsets[1] + scales[1] * (first_row - 0.5)
     return TilePlan(
-        files=tuple(files),
+        files=_files(paths, low, high),
         shape=shape,
         transform=(scales[0], 0.0, x0, 0.0, scales[1], y0),
         rows=rows,
@@ -194,11 +147,85 @@ def plan_of_clouds(
             scales=(scales[0], scales[1], scales[2]),
             offsets=(offsets[0], offsets[1], offsets[2]),
             first=(first_row, first_column),
-            ratio=(p, q),
+            ratio=ratio,
             spacing=spacing,
             reach=max(int(shortest) // _REACH, 2 * spacing),
             n_points=n_points,
         ),
+    )
+
+
+def _heads(paths: Sequence[str]) -> list[CloudHead]:
+    """Return what the headers of the files say; refuse files that are no clouds of one kind."""
+    for path in paths:
+        if suffix_of(path) not in CLOUD_SUFFIXES:
+            raise InputFileError(
+                f"{path}: {paths[0]} is a point cloud, this does not end in "
+                f"{any_of(CLOUD_SUFFIXES)}; name files of one kind."
+            )
+    heads = [read_head(path) for path in paths]
+    _require_alike(paths, heads)
+    return heads
+
+
+def _frame(
+    name: str,
+    head: CloudHead,
+    low: NDArray[np.int64],
+    high: NDArray[np.int64],
+    system: CoordinateSystem,
+    place: Georeference,
+    vertical_unit: str | None,
+) -> tuple[LocalFrame, str]:
+    """Return the working frame of all files, from their extents, and the unit of z."""
+    scales, offsets = np.array(head.layout.scales), np.array(head.layout.offsets)
+    corners = np.array([[*low.min(axis=0), 0], [*high.max(axis=0), 0]])
+    x_ends, y_ends, _ = np.sort(corners * scales + offsets, axis=0).T.tolist()
+    corners[:, 2] = round((head.layout.low[2] - offsets[2]) / scales[2])
+    require_plan(name, PointCloud(corners.astype(np.int32), scales, offsets), system)
+    bounds = (x_ends[0], y_ends[0], x_ends[1], y_ends[1])
+    return frame_of_bounds(name, system, bounds, vertical_unit or place.vertical_unit, place.fault)
+
+
+def _ratio(name: str, scales: Sequence[float], frame: LocalFrame) -> tuple[int, int]:
+    """Return the steps of x and of y, in metres, as small whole numbers."""
+    steps = abs(scales[0]) * frame.x_scale, abs(scales[1]) * frame.y_scale
+    ratio = Fraction(steps[0] / steps[1]).limit_denominator(_LARGEST_TERM)
+    if not 1 <= ratio.numerator <= _LARGEST_TERM:
+        raise InputFileError(
+            f"{name}: x is stored in steps of {steps[0]:g} and y in steps of {steps[1]:g}; bring "
+            "them to like scales first (pdal translate --writers.las.scale_x and so on)."
+        )
+    return ratio.numerator, ratio.denominator
+
+
+def _spacing(
+    low: NDArray[np.int64], high: NDArray[np.int64], ratio: tuple[int, int], n_points: int
+) -> int:
+    """Return the mean distance of neighbouring points, in steps; flight lines may overlap."""
+    import shapely
+
+    boxes = shapely.box(*(low * ratio).T, *(high * ratio).T)
+    return max(round(float(np.sqrt(shapely.union_all(boxes).area / n_points))), 1)
+
+
+def _files(
+    paths: Sequence[str], low: NDArray[np.int64], high: NDArray[np.int64]
+) -> tuple[SourceFile, ...]:
+    """Return where each file lies in the whole, and by what it is known again."""
+    corners = low - low.min(axis=0)
+    sizes = high - low + 1
+    return tuple(
+        SourceFile(
+            path,
+            int(corner[1]),
+            int(corner[0]),
+            int(size[1]),
+            int(size[0]),
+            os.stat(path).st_size,
+            os.stat(path).st_mtime_ns,
+        )
+        for path, corner, size in zip(paths, corners, sizes, strict=True)
     )
 
 
@@ -247,21 +274,22 @@ def _ends(
 def _extents(
     paths: Sequence[str], heads: Sequence[CloudHead]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return the lowest and highest stored x and y of each file, as its header tells."""
+    """Return the lowest and highest stored x and y of each file, as its header says."""
     first = heads[0].layout
     lows, highs = [], []
     for path, head in zip(paths, heads, strict=True):
         ends = []
         for k in range(2):
-            told = np.array([head.layout.low[k], head.layout.high[k]])
-            if not np.isfinite(told).all() or told[0] > told[1]:
+            claimed = np.array([head.layout.low[k], head.layout.high[k]])
+            if not np.isfinite(claimed).all() or claimed[0] > claimed[1]:
                 raise InputFileError(
-                    f"{path}: the header says that {'xy'[k]} runs from {told[0]:g} to {told[1]:g}; "
-                    "repair the header first (lasinfo -repair), tiles are cut by it."
+                    f"{path}: the header says that {'xy'[k]} runs from {claimed[0]:g} to "
+                    f"{claimed[1]:g}; repair the header first (lasinfo -repair), tiles are "
+                    "cut by it."
                 )
             # Many writers round the bounds, as far as the readers of clouds let them.
-            slack = 1.5 * abs(first.scales[k]) + 5e-4 * (told[1] - told[0])
-            widened = np.array([told[0] - slack, told[1] + slack])
+            slack = 1.5 * abs(first.scales[k]) + 5e-4 * (claimed[1] - claimed[0])
+            widened = np.array([claimed[0] - slack, claimed[1] + slack])
             stored = (widened - first.offsets[k]) / first.scales[k]
             ends.append((np.floor(stored.min()), np.ceil(stored.max())))
         lows.append([low for low, _ in ends])

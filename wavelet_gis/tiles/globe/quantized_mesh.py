@@ -23,7 +23,7 @@ __all__ = ["QuantizedTile", "encoded_tile", "geocentric"]
 _SEMI_MAJOR, _SEMI_MINOR = 6378137.0, 6356752.314245179
 _STEPS = 32767
 _OCT_NORMALS = 1
-#: What is told of a tile that is too large to be hidden by the horizon: a point far above it.
+#: What is written for a tile that is too large to be hidden by the horizon: a point far above it.
 _ALWAYS_SEEN = 1e3
 
 FloatArray = NDArray[np.float64]

@@ -40,7 +40,7 @@ from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
 
 __all__ = ["LAYER", "Tileset", "ZoomFigures", "globe_points", "terrain_tiles"]
 
-#: The file that tells of all tiles.
+#: The file that describes all tiles.
 LAYER = "layer.json"
 
 #: Shares of a zoom's error that vertices may be off, tried one after the other until all points of
@@ -121,7 +121,7 @@ def terrain_tiles(
     Parameters
     ----------
     data : Terrain, Analysis, Filtered or GeoPyramid
-        From `wavelet_gis.open`. Its CRS tells where on earth it is; heights are written as they
+        From `wavelet_gis.open`. Its CRS says where on earth it is; heights are written as they
         are, in metres.
     folder : path
         A folder that does not exist yet, or one of an earlier tile set, to be replaced.
@@ -144,7 +144,7 @@ def terrain_tiles(
     Raises
     ------
     CrsError
-        Without a CRS that tells the place on earth.
+        Without a CRS that gives the place on earth.
     OptionError
         A zoom or an error that the format cannot hold.
     OutputFileError
@@ -174,7 +174,7 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
     Raises
     ------
     CrsError
-        Without a CRS that tells the place on earth, or where that is on both sides of 180 degrees.
+        Without a CRS that gives the place on earth, or where that is on both sides of 180 degrees.
     """
     if isinstance(data, Terrain):
         mesh, name = data.mesh, data.name

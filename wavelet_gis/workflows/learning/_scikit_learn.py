@@ -17,7 +17,7 @@ def few_threads(at_most: int) -> Iterator[None]:
 
     With as many OpenMP threads as cores, boosting took over fifty times as long on a machine
     with other work to do, since its threads spin while they wait. Only libraries that are loaded
-    already can be told.
+    already can be said.
     """
     import sklearn.ensemble  # noqa: F401
     from threadpoolctl import threadpool_limits

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from wavelet_core import Progress
 from wavelet_core.errors import OptionError
 from wavelet_core.features.signature import energy_signature
+from wavelet_core.progress import part_of
 from wavelet_gis.io.atomic import check_output
 from wavelet_gis.io.formats import (
     CLOUD_SUFFIXES,
@@ -25,7 +26,6 @@ from wavelet_gis.notes import Note
 from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.vertex_raster import Bands, label_band
-from wavelet_gis.progress import part_of
 from wavelet_gis.workflows.learning.classification import Validation
 from wavelet_gis.workflows.learning.clustering import (
     CLUSTERINGS,
@@ -219,7 +219,7 @@ def classify(
     merges : sequence of (from, to)
         Classes to be counted as another.
     validate : bool
-        Whether blocks of the map are predicted from the others, to tell how well that goes.
+        Whether blocks of the map are predicted from the others, to say how well that goes.
     seed : int
         Of samples.
     progress : callable, optional

@@ -86,7 +86,7 @@ def learn(
     is_las : bool
         Whether the labels are the classes of the points, which attributes may hold too.
     validate : bool
-        Predict blocks of the map from the others, too, and tell how well that works.
+        Predict blocks of the map from the others, too, and report how well that works.
     seed : int
         Of samples.
     progress : callable, optional

@@ -33,7 +33,7 @@ class Constraints(NamedTuple):
 
     breaklines : sequence of (n, 3) float64, z is NaN where it is that of the terrain
     outline : sequence of (n, 3) float64, the rings of a clip polygon, or what of them is inside
-    contains : callable or None, takes (m, 2) positions and tells which are inside
+    contains : callable or None, takes (m, 2) positions, returns which are inside
     border : sequence of (n, 3) float64, rings of the terrain itself, edges that are not locked
     points : (n_points, 3) float64, fixed ones; z is NaN where it is that of the terrain
     """

@@ -163,7 +163,7 @@ def _lines_in(shapes: Shapes) -> Shapes:
 def _cut(
     terrain: Terrain, lines: Shapes | None, clip: Any, domain: Any, is_whole: bool
 ) -> Constraints:
-    """Return lines and rings cut where they meet one another, and told apart again."""
+    """Return lines and rings, cut where they meet one another and sorted into the two again."""
     import shapely
 
     near = same_place(terrain.mesh.vertices)
@@ -237,7 +237,7 @@ def _lie_on(pieces: Shapes, line: Any, near: float) -> NDArray[np.bool_]:
 def _with_heights(pieces: Shapes, lines: Shapes | None, near: float) -> list[FloatArray]:
     """Return the corners of pieces with the z that the lines have there, NaN where they have none.
 
-    Where lines of different heights meet, the mean is taken, and told.
+    Where lines of different heights meet, the mean is taken, with a warning.
     """
     import shapely
 

@@ -59,7 +59,7 @@ def open_terrain(
     crs : str, optional
         Instead of the CRS in the file.
     vertical_unit : str, optional
-        Unit of z, instead of what the file tells.
+        Unit of z, instead of what the file says.
     nodata, offline
         Of a raster; see `wavelet_gis.io.raster.read_dem`.
     duplicates, max_edge, concave

@@ -1,4 +1,4 @@
-"""Which levels of a pyramid are told of where nobody names them."""
+"""Which levels of a pyramid are shown where nobody names them."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import numpy as np
 from wavelet_core.errors import OptionError
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 
-__all__ = ["checked_levels", "telling_levels"]
+__all__ = ["checked_levels", "default_levels"]
 
 #: Shares of the input's vertices at which a level is shown.
 SHOWN_SHARES = (0.25, 0.05)
 
 
-def telling_levels(geo: GeoPyramid) -> list[int]:
+def default_levels(geo: GeoPyramid) -> list[int]:
     """Return the levels nearest to a quarter and a twentieth of the vertices, and the coarsest.
 
     Parameters

@@ -23,7 +23,7 @@ from wavelet_gis.products.layers import Layer
 from wavelet_gis.products.styles import vertex_style
 from wavelet_gis.products.wkb import points_wkb
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
-from wavelet_gis.workflows.read_off.levels import checked_levels, telling_levels
+from wavelet_gis.workflows.read_off.levels import checked_levels, default_levels
 
 __all__ = ["PROFILE_SUFFIXES", "Profile", "profile"]
 
@@ -79,7 +79,7 @@ class Profile:
         return columns
 
     def layer(self) -> Layer:
-        """Return the points as a layer, z of the finest level that is told of."""
+        """Return the points as a layer, z of the finest level that is shown."""
         finest = self.heights[:, int(np.argmax(self.levels))]
         places = np.column_stack([self.places, np.nan_to_num(finest)])
         columns = self.table()
@@ -177,7 +177,7 @@ def profile(
         Lines that cannot be read, or none where the terrain is.
     """
     geo = pyramid_of(data)
-    given = [geo.pyramid.n_levels, *telling_levels(geo)] if levels is None else list(levels)
+    given = [geo.pyramid.n_levels, *default_levels(geo)] if levels is None else list(levels)
     chosen = checked_levels(geo, given)
     if step is None:
         step = float(level_spacings(geo.pyramid)[-1])

@@ -59,7 +59,7 @@ class Simplified(Surface):
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What is worth telling about the input and its analysis."""
+        """What is worth saying about the input and its analysis."""
         return self.geo.notes
 
     def analysis(self, *, measure: bool = True, progress: Progress | None = None) -> Analysis:
@@ -170,7 +170,7 @@ class Simplified(Surface):
             if self.zones and self.limits is not None
             else (),
             is_fitted=False,
-            rounds=(),  # what they tell of is the TIN
+            rounds=(),  # they describe the TIN
             along_lines=measured_along_lines(terrain, mesh),
             quality=quality_of(mesh),
         )

@@ -20,7 +20,7 @@ IntArray = NDArray[np.int64]
 #: Degrees. Up to 20.7 the refinement is proved to end; up to some 33 it does in practice.
 LARGEST_MIN_ANGLE = 30.0
 
-#: The refinement is given up, which is told, with so many times the points that it was given, and
+#: The refinement is given up, with a warning, with so many times the points that it was given, and
 #: so many more for each square of the longest edge. On Jacksboro and TM1 it took 2 to 6 times, and
 #: 2 to 3 for a square: only what does not end comes near.
 MOST_POINTS = 40

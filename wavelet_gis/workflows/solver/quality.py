@@ -38,7 +38,7 @@ def quality_of(mesh: TriangleMesh, unit: float = 1.0) -> MeshQuality:
     mesh : TriangleMesh
         With at least one face.
     unit : float
-        Lengths are told in so many of the mesh's.
+        Of the mesh, by which lengths are divided.
 
     Examples
     --------

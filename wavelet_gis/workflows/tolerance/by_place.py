@@ -77,7 +77,7 @@ def tolerances(
     Raises
     ------
     InputFileError
-        A file that cannot be read, or that does not tell the tolerance of some vertex.
+        A file that cannot be read, or that has no tolerance for some vertex.
     OptionError
         A formula that is none, numbers of another length, negative ones or none for some vertex.
     """
@@ -179,9 +179,9 @@ def _of_raster(place: Place, mesh: TriangleMesh, path: str | os.PathLike[str]) -
     from wavelet_gis.crs.projection import projected
     from wavelet_gis.io.raster.raster_reader import read_dem
 
-    dem, told = read_dem(path)
+    dem, georeference = read_dem(path)
     x, y = place.frame.to_file(mesh.vertices)[:, :2].T
-    there = coordinate_system(told.wkt)
+    there = coordinate_system(georeference.wkt)
     warn_of_one_crs(os.fspath(path), there, place.system)
     if there.wkt is not None and place.system.wkt is not None and there.wkt != place.system.wkt:
         x, y = projected(place.system, there, x, y)

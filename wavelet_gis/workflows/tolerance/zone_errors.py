@@ -14,7 +14,7 @@ __all__ = ["ZoneErrors", "zone_errors"]
 
 FloatArray = NDArray[np.float64]
 
-#: Zones are told of one by one up to so many different tolerances, and in octaves beyond.
+#: Zones are listed one by one up to so many different tolerances, and in octaves beyond.
 MOST_ZONES = 12
 
 

@@ -10,9 +10,9 @@ import rasterio
 from gis.samples import assert_same_raster, hills, write_tif
 
 from wavelet_core import analyse
+from wavelet_gis._memory import available_bytes, require_bytes
 from wavelet_gis.errors import InputFileError, RasterWarning
 from wavelet_gis.io.raster import read_dem, write_dem
-from wavelet_gis.io.raster.memory import available_memory, require_memory
 from wavelet_gis.io.raster.remote import remote_reference
 from wavelet_gis.products.level_raster import surface_dem
 from wavelet_gis.workflows.open import open_terrain
@@ -208,9 +208,9 @@ def test_the_own_cell_size_gives_the_own_grid(tmp_path):
 
 def test_memory_is_estimated_before_the_work(tmp_path):
     with pytest.raises(InputFileError, match=r"a: 9 cells need about 2\.0 GB.*1\.0 GB are free"):
-        require_memory(2 * 10**9, "a", "9 cells", available=10**9)
-    require_memory(10**9, "a", "9 cells", available=10**9)
-    assert available_memory() is None or available_memory() > 0
+        require_bytes(2 * 10**9, "a", "9 cells", available=10**9)
+    require_bytes(10**9, "a", "9 cells", available=10**9)
+    assert available_bytes() is None or available_bytes() > 0
 
 
 def test_a_raster_beyond_memory_is_refused_unread(tmp_path):

@@ -1,11 +1,11 @@
-"""What the constants of the surface partition are worth: errors and time with others beside them.
+"""What the constants of partition, refinement and denoising are worth, with others beside them.
 
-    python benchmarks/quality/partition_constants.py DEM... [--cells 300]
+    python benchmarks/quality/constants.py DEM... [--cells 300] [--only NAME...]
 
 Of each DEM the middle is taken. For each value of a constant: the mean, over the DEMs, of the
 figure that the constant is there for and of the processor's time, over those of the value in use.
-The figure is an error at a size, or a number of vertices at a tolerance, so lower is better. The
-tables in docs/topics/surface.md are made by this.
+The figure is an error, or a number of vertices at a tolerance, so lower is better. The tables in
+docs/topics/surface.md and docs/topics/filtering.md are made by this.
 """
 
 from __future__ import annotations
@@ -19,9 +19,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import rasterio
 
-from wavelet_core import Pyramid, TriangleMesh, analyse
-from wavelet_core._arrays import surface_cost
+from wavelet_core import Pyramid, TriangleMesh, analyse, denoise, refine
+from wavelet_core._arrays import refine_flip, refine_move, refine_replace, surface_cost
 from wavelet_core._kernels._jit import engine
+from wavelet_core.features.shape import surface_shape
+from wavelet_core.filtering.noise import by_place, outliers
 from wavelet_core.metrics import surface_errors
 from wavelet_core.partition import _mutable_level, error_guided
 
@@ -78,6 +80,51 @@ def to_tolerance(share_of_relief: float, **options: Any) -> Measure:
     return measure
 
 
+def refined_to(share: float) -> Measure:
+    """Return the RMSE of so large a share of the vertices after three rounds of refinement."""
+
+    def measure(mesh: TriangleMesh) -> float:
+        pyramid = analyse(mesh, target_vertices=int(share * mesh.n_vertices))
+        coarse = refine(pyramid[0], mesh, vertex_ids=pyramid.vertex_ids(0), rounds=3)
+        return coarse.rounds[-1].rmse
+
+    return measure
+
+
+def noise_of_mesh(mesh: TriangleMesh, share_of_relief: float = 0.02) -> tuple[Any, float]:
+    """Return normal noise, and its deviation: a part of that of the heights."""
+    sigma = share_of_relief * float(mesh.vertices[:, 2].std())
+    return np.random.default_rng(1).normal(0, sigma, mesh.n_vertices), sigma
+
+
+def of_outliers(mesh: TriangleMesh) -> float:
+    """Return outliers missed, and other values taken for some, for each of those put in.
+
+    One vertex in 200 is off by 8 to 30 standard deviations of the noise that all have.
+    """
+    rng = np.random.default_rng(2)
+    noise, sigma = noise_of_mesh(mesh)
+    n_out = mesh.n_vertices // 200
+    put_in = rng.choice(mesh.n_vertices, n_out, replace=False)
+    off = rng.uniform(8, 30, n_out) * rng.choice([-1, 1], n_out) * sigma
+    values = mesh.vertices[:, 2] + noise
+    values[put_in] += off
+    found, _ = outliers.without_outliers(mesh, values, sigma)
+    return len(np.setxor1d(found, put_in)) / n_out
+
+
+def of_noise_by_place(mesh: TriangleMesh) -> float:
+    """Return the RMSE after denoising where the noise grows with the slope, sixfold."""
+    noise, _ = noise_of_mesh(mesh)
+    slope = surface_shape(mesh).slope
+    strength = 0.5 + 2.5 * np.clip(slope / np.percentile(slope, 95), 0, 1)
+    vertices = mesh.vertices.copy()
+    vertices[:, 2] += noise * strength
+    noisy = TriangleMesh(vertices, mesh.faces)
+    clean = denoise(noisy, local_noise=True, n_pyramids=2)
+    return float(np.sqrt(np.mean((clean.vertices[:, 2] - mesh.vertices[:, 2]) ** 2)))
+
+
 TRIALS = (
     Trial(_mutable_level, "CHEAPEST_PART", (2, 4, 8, 16, 32, 64), "RMSE at 2 %", to_size(0.02)),
     Trial(error_guided, "COST_MARGIN", (1.1, 1.5, 2.0, 4.0), "RMSE at 2 %", to_size(0.02)),
@@ -92,6 +139,33 @@ TRIALS = (
     Trial(
         surface_cost, "TIE_SHARE", (0.0, 1e-5, 1e-3, 1e-1), "largest error at 5 %",
         to_size(0.05, "max"), "arrays",
+    ),
+    Trial(
+        refine_replace, "N_INSERTIONS", (1, 2, 4, 8), "RMSE at 5 %, refined",
+        refined_to(0.05), "arrays",
+    ),
+    Trial(
+        refine_flip, "LEAST_GAIN", (0.0, 1e-6, 1e-3, 1e-2), "RMSE at 5 %, refined",
+        refined_to(0.05), "arrays",
+    ),
+    Trial(
+        refine_move, "LEAST_GAIN", (0.0, 1e-4, 1e-3, 1e-2), "RMSE at 5 %, refined",
+        refined_to(0.05), "arrays",
+    ),
+    Trial(
+        outliers, "OUTLIER_DEVIATIONS", (3.0, 4.0, 5.0, 6.0, 8.0), "wrong for each outlier",
+        of_outliers,
+    ),
+    Trial(
+        outliers, "OUTLIER_RELIEF", (0.25, 0.5, 1.0, 2.0), "wrong for each outlier", of_outliers,
+    ),
+    Trial(
+        by_place, "VERTICES_OF_BLOCK", (9, 16, 25, 49, 100), "RMSE after denoising",
+        of_noise_by_place,
+    ),
+    Trial(
+        by_place, "BLUR_OF_BLOCKS", (0.25, 0.5, 1.0, 2.0), "RMSE after denoising",
+        of_noise_by_place,
     ),
 )  # fmt: skip
 
@@ -130,16 +204,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("dems", nargs="+")
     parser.add_argument("--cells", type=int, default=300, help="width of the middle")
+    parser.add_argument("--only", nargs="+", metavar="NAME", help="of the constants")
     arguments = parser.parse_args()
     meshes = [middle_of(path, arguments.cells) for path in arguments.dems]
     for trial in TRIALS:
+        if arguments.only and trial.name not in arguments.only:
+            continue
         in_use = getattr(trial.module, trial.name)
         measured(trial, meshes[0], in_use)  # compiles
         found = {
             value: np.array([measured(trial, mesh, value) for mesh in meshes])
             for value in trial.values
         }
-        print(f"\n| `{trial.name}` | {trial.what} | worst DEM | time |\n|---|---|---|---|")
+        name = f"{trial.module.__name__.rpartition('.')[2]}.{trial.name}"
+        print(f"\n| `{name}` | {trial.what} | worst DEM | time |\n|---|---|---|---|")
         for value, figures in found.items():
             ratio = figures / found[in_use]
             mark = " (in use)" if value == in_use else ""

@@ -2,8 +2,8 @@
 
 Much of the work is done by single calls of numpy, scipy or Qhull that take many seconds and ask
 nobody. Here the thread of the algorithm waits for them, and looks at the button all the time. Once
-it is pressed the work is left alone: it stops by itself where it next tells its progress, and what
-it came to is dropped. So only what computes may run here, nothing that writes or holds layers.
+it is pressed the work is left alone: it stops by itself where it next reports its progress, and
+what it came to is dropped. So only what computes may run here, nothing that writes or holds layers.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ LOOK, SILENCE = 0.1, 0.4
 #: Share of what is left of its part by which the bar creeps.
 CREEP = 0.01
 #: Share of what is left at the last word of the work by which the bar may be ahead of it: further
-#: ahead, nothing would be seen of what it tells next.
+#: ahead, nothing would be seen of what it reports next.
 LEAD = 0.25
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
-TOLD = 0.9
+WORK_PART = 0.9
 
 
 class Work:
-    """What a computation tells of itself, as its functions take it.
+    """What a computation reports of itself, as its functions take it.
 
     Each is called in the thread of the work; what it says is passed on in that of the algorithm.
     """
@@ -51,15 +51,15 @@ class Work:
         self.fraction = fraction
         return not self.is_left
 
-    def teller(self, tell: Callable[[str], None]) -> Callable[[str], None]:
-        """Return a function that has a text told by the thread of the algorithm."""
-        return lambda text: self.said.put((tell, text))
+    def in_log(self, show: Callable[[str], None]) -> Callable[[str], None]:
+        """Return a function that hands a text to the thread of the algorithm, which shows it."""
+        return lambda text: self.said.put((show, text))
 
     def pass_on(self) -> None:
-        """Tell what was said."""
+        """Show what was said."""
         while not self.said.empty():
-            tell, text = self.said.get()
-            tell(text)
+            show, text = self.said.get()
+            show(text)
 
 
 def computed(
@@ -91,11 +91,11 @@ def computed(
     while thread.is_alive():
         thread.join(LOOK)
         now = perf_counter()
-        told = TOLD * min(work.fraction, 1.0)
-        if told > shown:
-            shown, news = told, now
+        reported = WORK_PART * min(work.fraction, 1.0)
+        if reported > shown:
+            shown, news = reported, now
         elif now - news > SILENCE:
-            goal = told + (LEAD if told else 1.0) * (1.0 - told)
+            goal = reported + (LEAD if reported else 1.0) * (1.0 - reported)
             shown, news = shown + CREEP * max(goal - shown, 0.0), now
         feedback.setProgress(100.0 * (start + (stop - start) * shown))
         work.pass_on()
@@ -121,7 +121,7 @@ def _run(
             work.outcome.append((True, function(work)))
             return
         log, wording = shown
-        with shown_in(_Relay(work.teller(log.pushWarning)), wording):
+        with shown_in(_Relay(work.in_log(log.pushWarning)), wording):
             work.outcome.append((True, function(work)))
     except BaseException as error:
         work.outcome.append((False, error))
