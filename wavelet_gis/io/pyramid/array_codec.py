@@ -388,7 +388,7 @@ def _pack(block: NDArray[Any], header: ArrayHeader, tally: Tally) -> bytes:
     if steps.is_zigzag:
         bits = _zigzag(bits)
     shuffled = bits.reshape(-1).view(np.uint8).reshape(-1, dtype.itemsize).T
-    raw = np.ascontiguousarray(shuffled).data
+    raw = np.ascontiguousarray(shuffled).reshape(-1).data
     if steps.is_lzma:
         return _lzma(raw, tally)
     packed = zlib.compress(raw, COMPRESSION_LEVEL)
