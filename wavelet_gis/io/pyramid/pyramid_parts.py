@@ -79,8 +79,9 @@ _CELLS = "cells"
 #: What the metadata say of steps whose filters follow from their collapses.
 _PLACES = "places"
 
-#: Of the time that the parts of a pyramid of points take: its record, where that was not kept.
-_SHARE_OF_RECORD = 0.2
+#: Shares of the time that the parts of a pyramid take, after which its source is told, and after
+#: which its record is, where that was not kept; the faces of points take the rest.
+_SHARE_OF_SOURCE, _SHARE_OF_RECORD = 0.2, 0.4
 
 #: Of the time in which a pyramid of points is read: its faces.
 _SHARE_OF_FACES = 0.3
@@ -102,9 +103,9 @@ def pyramid_to_parts(
     pyramid = geo.pyramid
     source, arrays = geo.origin.to_parts()
     has_cells = False
-    shrink_source(geo, source, arrays)
+    shrink_source(geo, source, arrays, part_of(progress, 0.0, _SHARE_OF_SOURCE))
     mesh = geo.origin.kept_mesh(geo.frame, pyramid.faces)
-    of_record = part_of(progress, 0.0, _SHARE_OF_RECORD)
+    of_record = part_of(progress, _SHARE_OF_SOURCE, _SHARE_OF_RECORD)
     record = None if mesh is None else record_of(pyramid, mesh, of_record)
     if record is None:
         recorded = None
