@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 
 from .errors import Cancelled
@@ -68,6 +68,24 @@ def watched(look: Callable[[float], None]) -> Iterator[None]:
         yield
     finally:
         _watching.reset(token)
+
+
+def watched_part(
+    progress: Progress | None, start: float, stop: float, message: str
+) -> AbstractContextManager[None]:
+    """Have the long steps inside a ``with`` block tell a part of the work's progress.
+
+    Parameters
+    ----------
+    progress : callable, optional
+    start, stop : float
+        Where the part begins and ends, in [0, 1].
+    message : str
+        Of the error, if the work is to stop.
+    """
+    if progress is None:
+        return nullcontext()
+    return watched(lambda share: report(progress, start + (stop - start) * share, message))
 
 
 def report_share(share: float) -> None:

@@ -42,6 +42,8 @@ EXTRA = (
     "sklearn",
     "trimesh",
     "ezdxf",
+    "CGAL",
+    "shapely",
 )
 
 #: Name of the case: algorithm, parameters. Words in braces are files that `prepare` has made.
@@ -61,6 +63,7 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
             "UPDATE": "minimum_norm",
         },
     ),
+    "Simplify DEM to TIN": ("simplifydem", {"INPUT": "{dem}", "TIN": "memory:"}),
     "Simplify DEM to TIN, no refinement": (
         "simplifydem",
         {"INPUT": "{dem}", "REFINE": 0, "TIN": "memory:"},
@@ -74,6 +77,21 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
             "RASTER": "{out}.tif",
             "MESH": "{out}.2dm",
         },
+    ),
+    "Simplify DEM to TIN, tolerance by place": (
+        "simplifydem",
+        {
+            "INPUT": "{dem}",
+            "MAX_ERROR": 2.0,
+            "ZONES": "{training}",
+            "ZONE_FIELD": "class",
+            "REFINE": 0,
+            "TIN": "memory:",
+        },
+    ),
+    "Simplify DEM to TIN, mesh for a solver": (
+        "simplifydem",
+        {"INPUT": "{dem}", "REFINE": 0, "MIN_ANGLE": 25.0, "MESH": "{out}.2dm"},
     ),
     "Analyse point cloud, LAS": ("analysepointcloud", {"INPUT": "{las}", "OUTPUT": "{out}.gpkg"}),
     "Analyse point cloud, LAZ": ("analysepointcloud", {"INPUT": "{laz}", "OUTPUT": "{out}.gpkg"}),
@@ -133,6 +151,7 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
     "Reconstruct DEM": ("reconstruct", {"INPUT": "{pyramid}", "DEM": "{out}.tif"}),
     "Reconstruct LAS": ("reconstruct", {"INPUT": "{cloud}", "POINT_CLOUD": "{out}.las"}),
     "Reconstruct LAZ": ("reconstruct", {"INPUT": "{cloud}", "POINT_CLOUD": "{out}.laz"}),
+    "Terrain for the web": ("webterrain", {"INPUT": "{pyramid}", "OUTPUT": "{out}_tiles"}),
     "Filter levels by gains": (
         "filterlevels",
         {"INPUT": "{pyramid}", "GAINS": [3, 0.0], "DEM": "{out}.tif", "DIFFERENCE": "{out}_d.tif"},
@@ -165,6 +184,21 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
     ),
     "Quality report": ("qualityreport", {"INPUT": "{pyramid}", "OUTPUT": "{out}.html"}),
 }
+
+#: What is in no case, and why.
+LEFT_OUT = dict.fromkeys(
+    (
+        "dem_to_coarse_tin",
+        "dem_to_denoised_dem",
+        "dem_to_hydraulic_mesh",
+        "dem_to_landform_clusters",
+        "dem_to_simplified_cog",
+        "dems_to_change_by_scale",
+        "point_cloud_to_contours",
+        "point_cloud_to_dem",
+    ),
+    "a model; its steps are algorithms of these cases, and of QGIS",
+)
 
 #: Files of the inputs.
 NAMES = {

@@ -15,6 +15,8 @@ from ..ui.translation import tr
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
+    from ..qgis_io.background import Work
+
 
 class PyramidAlgorithm(TerrainWaveletsAlgorithm):
     """Base of the algorithms that read a pyramid file."""
@@ -61,9 +63,13 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
         request.stage(tr("Reading the pyramid"))
         # A layer of the file may have been handed on by a model: 'file.gpkg|layername=coarse_tin'.
         path = request.input_file("INPUT")
-        geo = request.computed(
-            lambda work: read_input(path) if only_input else load(path, level=level).geo, 0.0, 0.05
-        )
+
+        def read(work: Work) -> GeoPyramid:
+            if only_input:
+                return read_input(path, work.progress)
+            return load(path, level=level, progress=work.progress).geo
+
+        geo = request.computed(read, 0.0, 0.05)
         for line in geo.history:
             request.say(tr("Changed since its analysis: {}").format(line))
         return geo

@@ -25,13 +25,53 @@ Result = TypeVar("Result")
 
 #: Seconds between two looks at the button, and those without news after which the bar creeps on.
 LOOK, SILENCE = 0.1, 0.4
-#: Share of what is left of its part by which the bar creeps.
-CREEP = 0.01
-#: Share of what is left at the last word of the work by which the bar may be ahead of it: further
-#: ahead, nothing would be seen of what it reports next.
-LEAD = 0.25
+#: Share of the way that is open to it by which the bar creeps: before the first word of the work
+#: that is all of its part, later `LEAD` of what is left.
+CREEP, LEAD = 0.01, 0.5
+#: Steps of the bar that are seen; smaller ones are no news.
+LEAST = 0.002
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
 WORK_PART = 0.9
+
+
+class Bar:
+    """Where the bar stands: moved by what a work reports, and by the clock while that is silent.
+
+    The clock may have moved it further than the work has come. What is reported next then moves it
+    by its share of what is left, so that it never rests until the work has caught up.
+
+    Parameters
+    ----------
+    now : float
+        Seconds, at which the work begins.
+    """
+
+    def __init__(self, now: float) -> None:
+        self._shown, self._reported, self._goal = 0.0, 0.0, 1.0
+        self._seen, self._moved = 0.0, now
+
+    def at(self, fraction: float, now: float) -> float:
+        """Return where it stands, in [0, 1].
+
+        Parameters
+        ----------
+        fraction : float
+            What the work last reported.
+        now : float
+            Seconds.
+        """
+        reported = WORK_PART * min(fraction, 1.0)
+        if reported > self._reported:
+            share = (reported - self._reported) / (1.0 - self._reported)
+            self._shown += share * (1.0 - self._shown)
+            self._reported = reported
+            self._goal = self._shown + LEAD * (1.0 - self._shown)
+        if now - self._moved > SILENCE:
+            self._shown += CREEP * (self._goal - self._shown)
+            self._moved = now
+        if self._shown - self._seen >= LEAST:
+            self._seen, self._moved = self._shown, now
+        return self._shown
 
 
 class Work:
@@ -87,16 +127,10 @@ def computed(
         target=context.run, args=(_run, work, function, shown_now()), daemon=True
     )
     thread.start()
-    shown, news = 0.0, perf_counter()
+    bar = Bar(perf_counter())
     while thread.is_alive():
         thread.join(LOOK)
-        now = perf_counter()
-        reported = WORK_PART * min(work.fraction, 1.0)
-        if reported > shown:
-            shown, news = reported, now
-        elif now - news > SILENCE:
-            goal = reported + (LEAD if reported else 1.0) * (1.0 - reported)
-            shown, news = shown + CREEP * max(goal - shown, 0.0), now
+        shown = bar.at(work.fraction, perf_counter())
         feedback.setProgress(100.0 * (start + (stop - start) * shown))
         work.pass_on()
         try:

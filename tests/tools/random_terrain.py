@@ -164,7 +164,9 @@ def compare(what, figures, opinion, relief):
     """Hold printed errors against the second opinion."""
     slack = SLACK * max(relief, 1.0)
     names = (("rmse", "rmse"), ("rmse_surface", "rmse"), ("max_error", "largest"),
-             ("max_error_surface", "largest"), ("n_uncovered", "n_uncovered"))  # fmt: skip
+             ("max_error_surface", "largest"), ("n_points_uncovered", "n_uncovered"))  # fmt: skip
+    if "level" in figures and "rmse_surface" in figures:  # of a raster it counts cells
+        names = (*names, ("n_uncovered", "n_uncovered"))
     for name, other in names:
         if name in figures and abs(figures[name] - getattr(opinion, other)) > slack:
             raise FaultError(

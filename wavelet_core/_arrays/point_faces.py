@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from .._kernels.point_faces import CLEAR, NOT_ASKED, TIED
+from ..progress import report_share
 from ._csr import expanded
 
-#: Points that are looked at together: a bound on the memory.
+#: Points that are looked at together: a bound on the memory, and on the time without a word.
 POINTS_AT_ONCE = 1 << 14
+
+
+def _blocks(start: int, stop: int) -> Iterator[slice]:
+    """Yield slices of points that are looked at together, and report how far they are."""
+    for first in range(start, stop, POINTS_AT_ONCE):
+        report_share((first - start) / (stop - start))
+        yield slice(first, min(first + POINTS_AT_ONCE, stop))
 
 
 def order_nearest(start, stop, first, found, x, y, nearest, reach):
@@ -20,36 +30,35 @@ def order_nearest(start, stop, first, found, x, y, nearest, reach):
 
 
 def classify_pairs(start, stop, x, y, nearest, reach, classes):
-    for first in range(start, stop, POINTS_AT_ONCE):
-        here = slice(first, min(first + POINTS_AT_ONCE, stop))
+    for here in _blocks(start, stop):
         others = nearest[here]
         offset_x, offset_y = x[others] - x[here][:, None], y[others] - y[here][:, None]
         squared = offset_x**2 + offset_y**2
         is_known = squared < reach[here][:, None]
         ids = np.arange(here.start, here.stop)[:, None]
         asked = is_known & ((ids < others) | (squared >= reach[others]))
-        of_pairs = _classes(offset_x, offset_y, squared, is_known)
-        classes[here] = np.where(asked, of_pairs, NOT_ASKED)
+        classes[here] = NOT_ASKED
+        for k in range(others.shape[1]):
+            rows = np.flatnonzero(asked[:, k])
+            near = (offset_x[rows], offset_y[rows], squared[rows], is_known[rows])
+            classes[here.start + rows, k] = _classes(k, *near)
 
 
-def _classes(x, y, squared, is_known):
-    classes = np.empty(x.shape, dtype=np.uint8)
-    for j in range(x.shape[1]):
-        cross = x[:, j, None] * y - y[:, j, None] * x
-        inner = squared - (x[:, j, None] * x + y[:, j, None] * y)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            cotangent = np.where(is_known, inner / np.abs(cross), np.inf)
-        left = np.where(cross > 0, cotangent, np.inf).min(axis=1)
-        right = np.where(cross < 0, cotangent, np.inf).min(axis=1)
-        is_between = (is_known & (cross == 0) & (inner < 0)).any(axis=1)
-        total = left + right
-        classes[:, j] = np.select(
-            [is_between, np.isinf(total), total < -CLEAR, total < -TIED, total <= TIED,
-             total <= CLEAR],
-            [0, 1, 2, 3, 4, 5], 6,
-        )  # fmt: skip
-    classes[(classes == 6) & (np.arange(x.shape[1]) >= x.shape[1] // 2)] = 7
-    return classes
+def _classes(k, x, y, squared, is_known):
+    """Return how clear it is that points are joined to the k-th of their nearest."""
+    cross = x[:, k, None] * y - y[:, k, None] * x
+    inner = squared - (x[:, k, None] * x + y[:, k, None] * y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cotangent = np.where(is_known, inner / np.abs(cross), np.inf)
+    left = np.where(cross > 0, cotangent, np.inf).min(axis=1)
+    right = np.where(cross < 0, cotangent, np.inf).min(axis=1)
+    is_between = (is_known & (cross == 0) & (inner < 0)).any(axis=1)
+    total = left + right
+    return np.select(
+        [is_between, np.isinf(total), total < -CLEAR, total < -TIED, total <= TIED,
+         total <= CLEAR],
+        [0, 1, 2, 3, 4, 5], 7 if k >= x.shape[1] // 2 else 6,
+    )  # fmt: skip
 
 
 def group_pairs(pairs, indptr, others):
@@ -68,12 +77,15 @@ def sort_groups(start, stop, indptr, others, is_new):
 def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_asked):
     n = len(indptr) - 1
     keys = np.repeat(np.arange(n), np.diff(indptr)) * n + heads
-    joined[:] = 0
-    v, k = np.nonzero(classes != NOT_ASKED)
-    u = nearest[v, k].astype(np.int64)
-    asked = np.minimum(v, u) * n + np.maximum(v, u)
-    place = np.minimum(np.searchsorted(keys, asked), max(len(keys) - 1, 0))
-    if len(keys):
+    joined[start:stop] = 0
+    if not len(keys):
+        return
+    for here in _blocks(start, stop):
+        v, k = np.nonzero(classes[here] != NOT_ASKED)
+        v += here.start
+        u = nearest[v, k].astype(np.int64)
+        asked = np.minimum(v, u) * n + np.maximum(v, u)
+        place = np.minimum(np.searchsorted(keys, asked), len(keys) - 1)
         is_edge = keys[place] == asked
         joined[v, k] = is_edge
         is_asked[place[is_edge]] = True
@@ -89,14 +101,18 @@ def gather_spokes(edges, indptr, heads, edge_of):
 
 
 def turn_spokes(start, stop, x, y, indptr, heads, edge_of, place):
-    tail = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
-    across, up = x[heads] - x[tail], y[heads] - y[tail]
-    span = np.abs(across) + np.abs(up)
-    turn = np.divide(up, span, out=np.zeros(len(up)), where=span > 0)
-    turn = np.where(across >= 0, turn, 2.0 - turn)
-    order = np.lexsort((turn, tail))
-    heads[:], edge_of[:] = heads[order], edge_of[order]
-    place[edge_of] = np.arange(len(heads))
+    for here in _blocks(start, stop):
+        spokes = slice(indptr[here.start], indptr[here.stop])
+        tail = np.repeat(
+            np.arange(here.start, here.stop), np.diff(indptr[here.start : here.stop + 1])
+        )
+        across, up = x[heads[spokes]] - x[tail], y[heads[spokes]] - y[tail]
+        span = np.abs(across) + np.abs(up)
+        turn = np.divide(up, span, out=np.zeros(len(up)), where=span > 0)
+        turn = np.where(across >= 0, turn, 2.0 - turn)
+        order = spokes.start + np.lexsort((turn, tail))
+        heads[spokes], edge_of[spokes] = heads[order], edge_of[order]
+        place[edge_of[spokes]] = np.arange(spokes.start, spokes.stop)
 
 
 def count_triangles(start, stop, x, y, indptr, heads, edge_of, place, n_triangles):

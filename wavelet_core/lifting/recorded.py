@@ -26,6 +26,7 @@ from ..partition.questions import Answers, Collapses, Writer, ask
 from ..partition.recorded import Manner, RecordedLevel, Start, record, replay, takes
 from ..partition.stopping import StopRecord
 from ..progress import Progress, report
+from ..progress import part_of as part_of_progress
 from .pyramid import Pyramid, PyramidPart
 from .signal import Normalisation
 from .step import Step
@@ -255,7 +256,12 @@ def record_of(
             start = _part_start(begun, mesh.vertices[ids, :2], locked[ids], frame, manner)
             level = RecordedLevel(start, manner)
         steps = pyramid.steps[last:first][::-1]
-        answers = record(level, [_collapse_step(step) for step in steps], frame.weights)
+        answers = record(
+            level,
+            [_collapse_step(step) for step in steps],
+            frame.weights,
+            part_of_progress(progress, 1 - first / pyramid.n_levels, 1 - last / pyramid.n_levels),
+        )
         if answers is None:
             return None
         parts.append(RecordPart(answers, **begun))
@@ -273,6 +279,7 @@ def pyramid_of(
     locked: NDArray[np.bool_] | None,
     parameters: Mapping[str, Any],
     stop: StopRecord | None,
+    progress: Progress | None = None,
 ) -> Pyramid:
     """Return the pyramid that a record describes.
 
@@ -284,6 +291,8 @@ def pyramid_of(
         The input.
     channels, update, locked, parameters, stop
         Of the pyramid.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -302,7 +311,8 @@ def pyramid_of(
             ids = ids[level.ids]
             _require(np.array_equal(ids, part.ids), "a part that begins at no level")
             level = RecordedLevel(_start_of(part, mesh, columns, is_locked, frame, manner), manner)
-        steps.extend(replay(level, part.answers))
+        done = 1.0 - level.n_vertices / mesh.n_vertices
+        steps.extend(replay(level, part.answers, part_of_progress(progress, done, 1.0)))
     ids = ids[level.ids]
     return Pyramid(
         faces=frozen(mesh.faces.astype(np.int32)),
@@ -327,6 +337,7 @@ def part_of(
     update: str,
     locked: NDArray[np.bool_] | None,
     parameters: Mapping[str, Any],
+    progress: Progress | None = None,
 ) -> Pyramid:
     """Return the levels of a pyramid from the beginning of one of its parts down.
 
@@ -342,6 +353,8 @@ def part_of(
         Of the pyramid.
     locked : (n,) bool, or None
         Of the part's vertices.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -369,7 +382,8 @@ def part_of(
             _require(np.array_equal(part.ids[ids], begins), "a part that begins at no level")
             start = _part_start(of_below, plan[ids], is_locked[ids], frame, manner)
             level = RecordedLevel(start, manner)
-        steps.extend(replay(level, below.answers))
+        done = 1.0 - level.n_vertices / len(plan)
+        steps.extend(replay(level, below.answers, part_of_progress(progress, done, 1.0)))
     ids = ids[level.ids]
     return Pyramid(
         faces=frozen(part.faces),

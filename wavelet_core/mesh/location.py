@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from .._kernels.metrics import cover_points, sort_into_cells
 from .._validate import FloatArray, IntArray
+from .connectivity import edges_of
 from .triangle_mesh import TriangleMesh
 
 #: Points that a cell of the search grid holds on average.
@@ -59,6 +61,74 @@ def surface_errors(
     if len(cover.point) < len(points):
         _fill_at_lone_vertices(errors, mesh, points)
     return errors
+
+
+def errors_with_border(mesh: TriangleMesh, points: FloatArray, within: float) -> FloatArray:
+    """Return the vertical distance of points from a surface, of those just beside it too.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+        The surface; linear on each face.
+    points : ndarray, shape (n_points, 3)
+        x, y, z in the unit of the mesh.
+    within : float
+        A point over no face that is no farther than this from the border, or from a vertex that no
+        face uses, in plan, is beside the mesh by rounding alone, and is measured there.
+
+    Returns
+    -------
+    ndarray, shape (n_points,)
+        As of `surface_errors`; NaN of points that really have no surface.
+
+    Examples
+    --------
+    >>> mesh = TriangleMesh([[0, 0, 0], [4, 0, 4], [0, 4, 0]], [[0, 1, 2]])
+    >>> places = np.array([[1.0, -1e-7, 3.0], [1.0, -1.0, 3.0]])
+    >>> errors_with_border(mesh, places, 1e-6).tolist()
+    [2.0, nan]
+    """
+    errors = surface_errors(mesh, points)
+    beside = np.flatnonzero(np.isnan(errors))
+    if not len(beside):
+        return errors
+    heights = _border_heights(mesh, points[beside, :2], within)
+    errors[beside] = points[beside, 2] - heights
+    return errors
+
+
+def _border_heights(mesh: TriangleMesh, plan: FloatArray, within: float) -> FloatArray:
+    """Return z of the border, or of a vertex that no face uses, at places that near; else NaN."""
+    vertices, heights = mesh.vertices, np.full(len(plan), np.nan)
+    lone = np.setdiff1d(np.arange(mesh.n_vertices), mesh.faces)
+    if len(lone):
+        far, nearest = cKDTree(vertices[lone, :2]).query(plan)
+        heights[far <= within] = vertices[lone[nearest[far <= within]], 2]
+    edges, n_faces = edges_of(mesh.faces)
+    tails, heads = (vertices[edges[n_faces == 1, k]] for k in (0, 1))
+    # Each edge of the border is a strip of two triangles, and these are laid over the places.
+    ahead = (heads - tails)[:, :2]
+    ahead *= within / np.hypot(*ahead.T)[:, None]
+    aside = np.column_stack([-ahead[:, 1], ahead[:, 0]])
+    start, stop = tails[:, :2] - ahead, heads[:, :2] + ahead
+    corners = np.stack([start - aside, stop - aside, stop + aside, start + aside], axis=1)
+    strip = 4 * np.arange(len(corners), dtype=np.int32)[:, None]
+    cover = cover_of(
+        TriangleMesh._trusted(
+            np.column_stack([corners.reshape(-1, 2), np.zeros(4 * len(corners))]),
+            np.concatenate(
+                [strip + np.array([0, 1, 2], np.int32), strip + np.array([0, 2, 3], np.int32)]
+            ),
+            np.empty((4 * len(corners), 0)),
+            (),
+        ),
+        plan,
+    )
+    tail, head = (ends[cover.face % max(len(tails), 1)] for ends in (tails, heads))
+    chord = (head - tail)[:, :2]
+    share = ((plan[cover.point] - tail[:, :2]) * chord).sum(axis=1) / (chord**2).sum(axis=1)
+    heights[cover.point] = tail[:, 2] + np.clip(share, 0.0, 1.0) * (head[:, 2] - tail[:, 2])
+    return heights
 
 
 def heights_at(mesh: TriangleMesh, plan: FloatArray) -> FloatArray:

@@ -22,11 +22,14 @@ from .._kernels.point_faces import (
     turn_spokes,
 )
 from .._validate import FloatArray
+from ..progress import Progress, report, watched_part
 
 __all__ = ["NOT_ASKED", "NearPairs", "SortedEdges", "near_pairs", "sorted_edges", "triangles_of"]
 
 #: Points whose neighbours are looked for together: a bound on the memory.
-POINTS_AT_ONCE = 1 << 17
+POINTS_AT_ONCE = 1 << 16
+
+_CANCELLED = "the work on the faces was cancelled; nothing was kept."
 
 
 class NearPairs(NamedTuple):
@@ -55,18 +58,23 @@ class SortedEdges(NamedTuple):
         tails = np.arange(len(self.indptr) - 1, dtype=np.int32)
         return np.column_stack([np.repeat(tails, np.diff(self.indptr)), self.heads])
 
-    def are_joined(self, pairs: NearPairs) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    def are_joined(
+        self, pairs: NearPairs, progress: Progress | None = None
+    ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         """Return of each pair that is asked about whether it is an edge, and which edges are."""
         joined = np.empty(pairs.classes.shape, dtype=np.uint8)
         is_asked = np.zeros(len(self.heads), dtype=bool)
-        run_in_ranges(
-            look_up_pairs, len(joined), pairs.nearest, pairs.classes, self.indptr, self.heads,
-            joined, is_asked,
-        )  # fmt: skip
+        with watched_part(progress, 0.0, 1.0, _CANCELLED):
+            run_in_ranges(
+                look_up_pairs, len(joined), pairs.nearest, pairs.classes, self.indptr, self.heads,
+                joined, is_asked,
+            )  # fmt: skip
         return joined, is_asked
 
 
-def near_pairs(x: FloatArray, y: FloatArray, n_nearest: int) -> NearPairs:
+def near_pairs(
+    x: FloatArray, y: FloatArray, n_nearest: int, progress: Progress | None = None
+) -> NearPairs:
     """Return the nearest points of each of some points, for docs/reference/format.md, "The input".
 
     Parameters
@@ -74,6 +82,8 @@ def near_pairs(x: FloatArray, y: FloatArray, n_nearest: int) -> NearPairs:
     x, y : (n,) float64
         Whole numbers, so small that sums of their products are exact; ``n > n_nearest + 1``.
     n_nearest : int
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     n = len(x)
     plan = np.column_stack([x, y])
@@ -81,11 +91,13 @@ def near_pairs(x: FloatArray, y: FloatArray, n_nearest: int) -> NearPairs:
     reach = np.empty(n)
     nearest = np.empty((n, n_nearest), dtype=np.int32)
     for first in range(0, n, POINTS_AT_ONCE):
+        report(progress, 0.05 + 0.4 * first / n, _CANCELLED)
         here = plan[first : first + POINTS_AT_ONCE]
         _, found = tree.query(here, k=n_nearest + 2, workers=-1)
         run_in_ranges(order_nearest, len(found), first, found, x, y, nearest, reach)
     classes = np.empty((n, n_nearest), dtype=np.uint8)
-    run_in_ranges(classify_pairs, n, x, y, nearest, reach, classes)
+    with watched_part(progress, 0.45, 1.0, _CANCELLED):
+        run_in_ranges(classify_pairs, n, x, y, nearest, reach, classes)
     return NearPairs(nearest, classes)
 
 
@@ -106,7 +118,9 @@ def sorted_edges(pairs: NDArray[np.int32], n_points: int) -> SortedEdges:
     return SortedEdges(before[indptr], heads[is_new])
 
 
-def triangles_of(x: FloatArray, y: FloatArray, edges: SortedEdges) -> NDArray[np.int32]:
+def triangles_of(
+    x: FloatArray, y: FloatArray, edges: SortedEdges, progress: Progress | None = None
+) -> NDArray[np.int32]:
     """Return the triangles of edges with no edge inside, the lowest corner first, sorted.
 
     Parameters
@@ -114,6 +128,8 @@ def triangles_of(x: FloatArray, y: FloatArray, edges: SortedEdges) -> NDArray[np
     x, y : (n,) float64
         As for `near_pairs`.
     edges : SortedEdges
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     n, n_spokes = len(x), 2 * len(edges.heads)
     indptr = np.zeros(n + 1, dtype=np.int64)
@@ -121,10 +137,13 @@ def triangles_of(x: FloatArray, y: FloatArray, edges: SortedEdges) -> NDArray[np
     edge_of = np.empty(n_spokes, dtype=np.int32)
     place = np.empty(n_spokes, dtype=np.int32)
     gather_spokes(edges.rows(), indptr, heads, edge_of)
-    run_in_ranges(turn_spokes, n, x, y, indptr, heads, edge_of, place)
+    with watched_part(progress, 0.1, 0.5, _CANCELLED):
+        run_in_ranges(turn_spokes, n, x, y, indptr, heads, edge_of, place)
+    report(progress, 0.5, _CANCELLED)
     n_triangles = np.empty(n, dtype=np.int32)
     spokes = (x, y, indptr, heads, edge_of, place)
     run_in_ranges(count_triangles, n, *spokes, n_triangles)
+    report(progress, 0.75, _CANCELLED)
     first = np.concatenate([[0], np.cumsum(n_triangles, dtype=np.int64)])
     triangles = np.empty((int(first[-1]), 3), dtype=np.int32)
     run_in_ranges(fill_triangles, n, *spokes, first, triangles)

@@ -178,8 +178,9 @@ def _geos_faces(centred: FloatArray) -> IntArray:
 
 def _is_whole(centred: FloatArray, faces: IntArray, peeled: IntArray) -> bool:
     """Return whether every point is used, the faces are a disk, and none is flat once peeled."""
-    directed = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-    n_edges = len(np.unique(np.sort(directed, axis=1), axis=0))
+    tails, heads = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    # one number for each edge: rows would be sorted with the interpreter held, for seconds
+    n_edges = len(np.unique(np.minimum(tails, heads) * len(centred) + np.maximum(tails, heads)))
     if len(np.unique(faces)) != len(centred) or len(centred) - n_edges + len(faces) != 1:
         return False
     return len(np.unique(peeled)) == len(centred) and bool(

@@ -16,6 +16,7 @@ from .._kernels._jit import run_in_ranges
 from .._kernels.surface_points import FacePoints, hand_over
 from .._validate import FloatArray
 from ..errors import PyramidError
+from ..progress import Progress, report
 from ._mutable_level import CollapseStep, SurfaceLevel
 from .questions import Answers, Collapses, Pen, Reader, Writer, ask
 
@@ -128,7 +129,10 @@ class RecordedLevel(SurfaceLevel):
 
 
 def record(
-    level: RecordedLevel, steps: Sequence[CollapseStep], weights: FloatArray
+    level: RecordedLevel,
+    steps: Sequence[CollapseStep],
+    weights: FloatArray,
+    progress: Progress | None = None,
 ) -> Answers | None:
     """Return the answers that give the steps from ``level`` on; None where they do not to the bit.
 
@@ -140,11 +144,16 @@ def record(
         The finest first; their details are in input units.
     weights : (c,) float64
         What the level's heights are in, by those.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     writer = Writer()
-    if all(takes(level, writer, step, weights) for step in steps):
-        return writer.answers()
-    return None
+    n_vertices = level.n_vertices
+    for step in steps:
+        if not takes(level, writer, step, weights):
+            return None
+        report(progress, 1.0 - level.n_vertices / n_vertices)
+    return writer.answers()
 
 
 def takes(level: RecordedLevel, writer: Writer, step: CollapseStep, weights: FloatArray) -> bool:
@@ -160,8 +169,19 @@ def takes(level: RecordedLevel, writer: Writer, step: CollapseStep, weights: Flo
     return all(np.array_equal(one, other) for one, other in pairs)
 
 
-def replay(level: RecordedLevel, answers: Answers) -> list[CollapseStep]:
+def replay(
+    level: RecordedLevel, answers: Answers, progress: Progress | None = None
+) -> list[CollapseStep]:
     """Return the steps that answers describe, the finest first; ``level`` is left where they end.
+
+    Parameters
+    ----------
+    level : RecordedLevel
+        Where they start.
+    answers : Answers
+        Of any origin.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -169,6 +189,10 @@ def replay(level: RecordedLevel, answers: Answers) -> list[CollapseStep]:
         They describe no steps of an analysis.
     """
     reader = Reader(answers)
-    steps = [level.take(reader) for _ in range(len(answers.levels))]
+    steps = []
+    n_vertices = level.n_vertices
+    for _ in range(len(answers.levels)):
+        steps.append(level.take(reader))
+        report(progress, 1.0 - level.n_vertices / n_vertices)
     reader.finish()
     return steps

@@ -66,6 +66,28 @@ class Area:
             found[at_stake] = shapely.intersects(shapely.polygons(corners[at_stake]), self.shape)
         return found
 
+    def part_of(self, mesh: TriangleMesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the vertices of a mesh that are part of it, and its faces between those.
+
+        They are those of the faces that reach into it, and in it those without faces.
+        """
+        faces = mesh.faces[self.faces_of(mesh)]
+        is_part = np.ones(mesh.n_vertices, dtype=bool)
+        is_part[mesh.faces] = False
+        is_part &= self.has_points(mesh.vertices)
+        is_part[faces] = True
+        place = np.cumsum(is_part) - 1
+        return np.flatnonzero(is_part), place[faces]
+
+    def has_points(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return which points, in the working frame, are in it or on its edge."""
+        import shapely
+
+        if self.shape is None:
+            return np.ones(len(points), dtype=bool)
+        found: NDArray[np.bool_] = shapely.intersects_xy(self.shape, points[:, 0], points[:, 1])
+        return found
+
 
 class _Place(NamedTuple):
     system: CoordinateSystem

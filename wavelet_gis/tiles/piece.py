@@ -265,13 +265,14 @@ def _made(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) -> 
 
 
 def _tile(plan: TilePlan, piece: Piece) -> GeoPyramid | None:
-    """Return the pyramid of a tile; None where it has no surface."""
+    """Return the pyramid of a tile; None where it has no data.
+
+    Cells by themselves are vertices without faces, and stay so.
+    """
     dem = tile_dem(plan, piece)
     if dem is None or not dem.valid.any():
         return None
     mesh = dem_mesh(dem, plan.local_frame)
-    if mesh.n_faces == 0:
-        return None
     top, left, _, _ = plan.cells(piece)
     rows, columns = np.nonzero(dem.valid)
     locked = plan.is_shared(piece, rows + top, columns + left)

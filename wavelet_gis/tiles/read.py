@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
@@ -21,8 +22,9 @@ from wavelet_gis.tiles.area import Area, Box, area_of
 from wavelet_gis.tiles.index import TileIndex, open_index
 from wavelet_gis.tiles.piece import join
 from wavelet_gis.tiles.plan import Piece
-from wavelet_gis.tiles.within import pieces_within
-from wavelet_gis.workflows.extract import Surface, SurfaceErrors
+from wavelet_gis.tiles.within import PointErrors, pieces_within
+from wavelet_gis.workflows.extract import Surface, SurfaceErrors, errors_in_figures
+from wavelet_gis.workflows.options import warn_of_error_above
 
 __all__ = ["Region", "extract_region", "restored_raster", "terrain_of_region"]
 
@@ -107,16 +109,14 @@ def extract_region(
     whole = join(plan, parts.meshes, [np.ones(mesh.n_vertices) for mesh in parts.meshes])
     mesh, cells = whole.mesh, whole.cells
     if area.shape is not None:
-        used, faces = np.unique(mesh.faces[area.faces_of(mesh)], return_inverse=True)
+        used, faces = area.part_of(mesh)
         if not len(used):
             raise InputFileError(
                 "{path}: there are no triangles in the region; give another {0}.",
                 area.option,
                 path=found.folder,
             )
-        mesh = TriangleMesh(
-            mesh.vertices[used], faces.reshape(-1, 3), mesh.attributes[used], whole.names
-        )
+        mesh = TriangleMesh(mesh.vertices[used], faces, mesh.attributes[used], whole.names)
         cells = cells[used]
     assert parts.geo is not None
     geo = replace(parts.geo, origin=MeshOrigin(), errors=None, notes=())
@@ -154,14 +154,33 @@ def _within(index: TileIndex, area: Area, max_error: float) -> _Parts:
     z_scale = index.plan.local_frame.z_scale
     chosen = list(pieces_within(index, area, max_error * z_scale))
     pieces = [one.piece for one in chosen]
+    errors = _errors_of(
+        [*chain.from_iterable(one.errors for one in chosen), *_without_surface(index, area)],
+        z_scale,
+    )
+    if pieces:
+        warn_of_error_above(str(index.folder), errors.max_error, None, max_error=max_error)
     return _Parts(
         pieces,
         [one.mesh for one in chosen],
         _loaded(index, pieces[0], index.levels_of(pieces[0].stage)) if pieces else None,
         max((index.level_of(one.piece, one.level) for one in chosen), default=0),
         index.plan.n_stages - 1,
-        _errors_of([one.errors for one in chosen], z_scale),
+        errors,
     )
+
+
+def _without_surface(index: TileIndex, area: Area) -> Iterator[PointErrors]:
+    """Yield the points of tiles that have no surface, by whichever are in an area."""
+    if index.plan.points is None:
+        return
+    from wavelet_gis.tiles.cloud.restore import loose_points
+
+    for tile in index.plan.pieces(0):
+        if index.records.get(tile, {}).get("status") == "loose" and area.has_piece(tile):
+            places, cells = loose_points(index, tile)
+            inside = area.has_points(places)
+            yield PointErrors(np.full(np.count_nonzero(inside), np.nan), cells[inside])
 
 
 def terrain_of_region(
@@ -209,14 +228,14 @@ def _warn_of_gaps(index: TileIndex, area: Area, stage: int) -> None:
         )
 
 
-def _errors_of(parts: list[NDArray[np.float64]], z_scale: float) -> SurfaceErrors:
-    errors = np.concatenate([np.empty(0), *parts]) / z_scale
-    covered = errors[np.isfinite(errors)]
-    return SurfaceErrors(
-        float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,
-        float(np.abs(covered).max(initial=0.0)),
-        len(errors) - len(covered),
-    )
+def _errors_of(parts: list[PointErrors], z_scale: float) -> SurfaceErrors:
+    """Return the errors of all points in figures, those of several tiles counted once."""
+    errors, seen = [np.empty(0)], np.empty(0, dtype=np.int64)
+    for part in parts:
+        counts = ~np.isin(part.cells, seen)
+        errors.append(part.errors[counts])
+        seen = np.union1d(seen, part.cells[counts & (part.cells >= 0)])
+    return errors_in_figures(np.concatenate(errors) / z_scale)
 
 
 def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:

@@ -2,8 +2,9 @@
 
 Of a tile set any pieces fit together that cover it once, whatever their stages and levels: the
 border of a group is locked at all its levels, and so is that of the tiles beside it. So each part
-of the terrain can be as coarse as the tolerance allows. A group tells its errors against what it
-begins with; what counts is the distance of the input's vertices, so these are read, tile by tile.
+of the terrain can be as coarse as the tolerance allows. The errors in a group's record are those at
+some of the input's points; what counts is the distance of all of them, so these are read, tile by
+tile, and with them the points that were merged into one.
 """
 
 from __future__ import annotations
@@ -16,12 +17,30 @@ from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.accuracy.between_levels import mesh_of_accuracy
-from wavelet_core.metrics import surface_errors
+from wavelet_core.mesh.location import errors_with_border
+from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.tiles.area import Area
 from wavelet_gis.tiles.index import TileIndex
+from wavelet_gis.tiles.piece import cells_of
 from wavelet_gis.tiles.plan import Piece
 
-__all__ = ["Chosen", "pieces_within"]
+__all__ = ["Chosen", "PointErrors", "pieces_within"]
+
+
+#: Part of its extent by which a point may be beside a mesh by rounding: in a hundred kilometres a
+#: tenth of a millimetre.
+BESIDE = 1e-9
+
+
+class PointErrors(NamedTuple):
+    """How far the input's points in a tile are off, those merged with a vertex among them.
+
+    errors : (n,) float64, in the working frame; NaN where no face is
+    cells : (n,) int64, in the grid of all, where other tiles have the point too; else -1
+    """
+
+    errors: NDArray[np.float64]
+    cells: NDArray[np.int64]
 
 
 class Chosen(NamedTuple):
@@ -30,13 +49,13 @@ class Chosen(NamedTuple):
     piece : Piece
     mesh : TriangleMesh, in the working frame
     level : int, of the piece; the finest that is part of it
-    errors : (n,) float64, of the vertices of the input in it; NaN where it has no face
+    errors : tuple of PointErrors, by tile
     """
 
     piece: Piece
     mesh: TriangleMesh
     level: int
-    errors: NDArray[np.float64]
+    errors: tuple[PointErrors, ...]
 
 
 def pieces_within(index: TileIndex, area: Area, limit: float) -> Iterator[Chosen]:
@@ -68,10 +87,12 @@ def _tile(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen:
     """Return a tile, fine where it has to be."""
     from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
-    pyramid = read_pyramid(index.path(piece)).pyramid
-    part = mesh_of_accuracy(pyramid, limit)
-    finest = pyramid.mesh(pyramid.n_levels).vertices
-    return Chosen(piece, part.mesh, part.level, surface_errors(part.mesh, finest))
+    geo = read_pyramid(index.path(piece))
+    part = mesh_of_accuracy(geo.pyramid, limit)
+    points = _points_of(index, piece, geo)
+    errors = _errors_on(part.mesh, points.places)
+    counted = _counted(area, part.mesh, points, errors)
+    return Chosen(piece, part.mesh, part.level, (counted,))
 
 
 def _group(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen | None:
@@ -100,17 +121,69 @@ def _group(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen |
 
 def _errors_within(
     index: TileIndex, area: Area, piece: Piece, mesh: TriangleMesh, limit: float
-) -> NDArray[np.float64] | None:
-    """Return the errors of the input's vertices in a group; None once one is beyond the limit."""
+) -> tuple[PointErrors, ...] | None:
+    """Return the errors of the input in a group; None once a vertex of it is beyond the limit.
+
+    One that has no face is beyond any limit.
+    """
     from wavelet_gis.io.pyramid.pyramid_file import read_input
 
-    found = [np.empty(0)]
+    found = []
     for tile in index.plan.tiles(piece):
         if index.records.get(tile, {}).get("status") != "whole" or not area.has_piece(tile):
             continue
-        points = read_input(index.path(tile)).pyramid.mesh(0).vertices
-        errors = surface_errors(mesh, points)
-        if np.nanmax(np.abs(errors), initial=0.0) > limit:
+        points = _points_of(index, tile, read_input(index.path(tile)))
+        below = _errors_on(mesh, points.places)
+        of_vertices = points.vertex_heights + below[: len(points.vertex_heights)]
+        if not (np.abs(of_vertices) <= limit).all():
             return None
-        found.append(errors)
-    return np.concatenate(found)
+        found.append(_counted(area, mesh, points, below))
+    return tuple(found)
+
+
+class _Points(NamedTuple):
+    """The input's points in a tile.
+
+    places : (n, 3) float64, with z of 0; those of the vertices first
+    heights : (n,) float64
+    vertex_heights : (n_vertices,) float64, which are others where points were merged to a mean
+    cells : (n,) int64, in the grid of all; -1 where no other tile has them
+    """
+
+    places: NDArray[np.float64]
+    heights: NDArray[np.float64]
+    vertex_heights: NDArray[np.float64]
+    cells: NDArray[np.int64]
+
+
+def _points_of(index: TileIndex, tile: Piece, geo: GeoPyramid) -> _Points:
+    plan, finest = index.plan, geo.pyramid.mesh(geo.pyramid.n_levels)
+    cells, points = cells_of(plan, finest), finest.vertices.copy()
+    if geo.origin.points is not None:
+        points = geo.origin.points.points_for_errors(finest, geo.frame)
+        cells = np.concatenate([cells, cells[geo.origin.points.representative]])
+    rows, columns = np.divmod(cells, plan.shape[1])
+    cells[~plan.is_shared(tile, rows, columns)] = -1
+    heights = points[:, 2].copy()
+    points[:, 2] = 0.0
+    return _Points(points, heights, finest.vertices[:, 2], cells)
+
+
+def _errors_on(mesh: TriangleMesh, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return minus the height of a mesh; beside it by rounding, that of its border."""
+    if not mesh.n_vertices:
+        return np.full(len(places), np.nan)
+    extent = float(np.ptp(mesh.vertices[:, :2], axis=0).max())
+    return errors_with_border(mesh, places, BESIDE * extent)
+
+
+def _counted(
+    area: Area, mesh: TriangleMesh, points: _Points, below: NDArray[np.float64]
+) -> PointErrors:
+    """Return the errors of the points that count: those of the area, or under its triangles."""
+    if area.shape is None:
+        return PointErrors(points.heights + below, points.cells)
+    used, faces = area.part_of(mesh)
+    below = _errors_on(TriangleMesh(mesh.vertices[used], faces), points.places)
+    counts = np.isfinite(below) | area.has_points(points.places)
+    return PointErrors((points.heights + below)[counts], points.cells[counts])

@@ -25,7 +25,7 @@ from wavelet_gis.workflows.save import check_surface_output, write_surface_raste
 from wavelet_gis.workflows.tolerance.by_place import MaxError, is_by_place, tolerances
 from wavelet_gis.workflows.tolerance.zone_errors import ZoneErrors, zone_errors
 
-__all__ = ["Surface", "SurfaceErrors", "extract", "measured"]
+__all__ = ["Surface", "SurfaceErrors", "errors_in_figures", "extract", "measured"]
 
 
 class SurfaceErrors(NamedTuple):
@@ -38,6 +38,20 @@ class SurfaceErrors(NamedTuple):
     rmse: float
     max_error: float
     n_uncovered: int
+
+    def told(self, unit: str) -> str:
+        """Return them as part of a sentence.
+
+        Examples
+        --------
+        >>> SurfaceErrors(0.02, 0.05, 3).told("metre")
+        'RMSE 0.02, largest error 0.05 (metre) at all input points but 3 over no triangle'
+        """
+        beside = f" but {self.n_uncovered:,} over no triangle" if self.n_uncovered else ""
+        return (
+            f"RMSE {self.rmse:.4g}, largest error {self.max_error:.4g} ({unit}) at all input "
+            f"points{beside}"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +147,12 @@ class Surface(InOtherLibraries):
             sizes["zones"] = [zone._asdict() for zone in self.zones]
         if self.errors is None:
             return sizes
-        return {**sizes, "rmse": self.errors.rmse, "max_error": self.errors.max_error}
+        return {
+            **sizes,
+            "rmse": self.errors.rmse,
+            "max_error": self.errors.max_error,
+            "n_points_uncovered": self.errors.n_uncovered,
+        }
 
 
 def measured(
@@ -155,7 +174,11 @@ def measured(
     cover : Cover, optional
         Of the points on the mesh, where it is known already.
     """
-    errors = surface_errors(mesh, points, cover) / z_scale
+    return errors_in_figures(surface_errors(mesh, points, cover) / z_scale)
+
+
+def errors_in_figures(errors: NDArray[np.float64]) -> SurfaceErrors:
+    """Return vertical errors in figures; NaN are points that no triangle covers."""
     covered = errors[np.isfinite(errors)]
     return SurfaceErrors(
         float(np.sqrt(np.mean(covered**2))) if len(covered) else 0.0,

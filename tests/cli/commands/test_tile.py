@@ -55,7 +55,8 @@ def test_from_clouds_to_tiles_and_back(done, refused, tmp_path):
     done("reconstruct", index, tmp_path / "back.las")
     assert (tmp_path / "back.las").read_bytes() == cloud.read_bytes()
     within = done("extract", index, tmp_path / "b.ply", "--max-error", "2", "--json").figures
-    assert 0 < within["max_error"] <= 2
+    assert within["max_error"] > 2  # of points that share x and y with a vertex, which is said
+    assert [note["code"] for note in within["notes"]] == ["error_above_what_was_asked"]
     message = refused("extract", index, tmp_path / "d.ply", "--max-error", "2*slope")
     assert "is one number" in message
     box = "500010,5100010,500030,5100030"

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import time
+import warnings
 from dataclasses import replace
 
 import laspy
@@ -434,11 +435,14 @@ def test_a_tolerance_is_kept_at_every_vertex_by_pieces_of_all_stages(tiled):
     finest = wg.extract_region(index, level=index.n_levels).surface.mesh
     sizes = []
     for limit in (0.0, 0.2, 3.0, 12.0, 40.0):
-        region = wg.extract_region(index, max_error=limit)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", TerrainWarning)  # points that share x and y
+            region = wg.extract_region(index, max_error=limit)
         mesh = region.surface.mesh
         errors = np.abs(surface_errors(mesh, finest.vertices))
-        assert np.nanmax(errors) <= limit + 1e-9
-        assert region.surface.errors.max_error == pytest.approx(np.nanmax(errors), abs=1e-9)
+        assert errors.max() <= limit + 1e-9
+        assert region.surface.errors.max_error >= errors.max() - 1e-9
+        assert region.surface.errors.n_uncovered == 0
         assert mesh.plan_areas.min() > 0
         assert mesh.plan_areas.sum() == pytest.approx(finest.plan_areas.sum(), rel=1e-9)
         tail, head = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()

@@ -16,7 +16,13 @@ from wavelet_core.mesh.triangulation import delaunay_faces
 from wavelet_gis.errors import CrsError, OutputFileError, TerrainWarning
 from wavelet_gis.tiles.globe.tile_grid import STEPS as TILE_STEPS
 from wavelet_gis.tiles.globe.tile_grid import Tile
-from wavelet_gis.tiles.globe.tile_mesh import TileMesh, errors_on, on_tile, without_slivers
+from wavelet_gis.tiles.globe.tile_mesh import (
+    OnTile,
+    TileMesh,
+    errors_on,
+    on_tile,
+    without_slivers,
+)
 
 
 def read_set(folder):
@@ -320,6 +326,62 @@ def test_a_promise_that_is_not_kept_is_told(tmp_path):
     with pytest.warns(TerrainWarning, match="off by more than promised"):
         figures = wg.terrain_tiles(cloud, tmp_path / "cloud", max_error=0.5)
     assert any(zoom.max_error > zoom.promised for zoom in figures.zooms)
+
+
+@pytest.mark.filterwarnings("ignore::wavelet_gis.errors.TerrainWarning")  # a cliff of 3 km
+@pytest.mark.parametrize(("cell", "height"), [(1.0, 3000.0), (0.01, 0.0)])
+def test_the_default_error_is_one_that_the_steps_of_height_allow(tmp_path, cell, height):
+    """A DEM of metres in high mountains was refused, with an error that nobody had asked for."""
+    import rasterio
+
+    place = rasterio.Affine(cell, 0.0, 500000.0, 0.0, -cell, 5100000.0)
+    values = height + (hills(30, 30) - 300) * cell / 10
+    path = write_tif(tmp_path / "dem.tif", values, transform=place)
+    figures = wg.terrain_tiles(wg.open(path), tmp_path / "out")
+    assert figures.zooms[-1].promised == 4 * figures.height_step > 0.1 * cell
+
+
+def test_a_point_over_a_hole_has_no_error_and_one_beside_a_tile_by_rounding_has():
+    """Both counted as exact."""
+    ends = np.array([0, TILE_STEPS, TILE_STEPS, 0]), np.array([0, 0, TILE_STEPS, TILE_STEPS])
+    drawn = OnTile(*ends, np.full(4, 5), np.array([[0, 1, 2]]), 0)
+    points = np.array([[20000.0, 9000, 7], [20000, -1e-5, 8], [9000, 20000, 7], [20000, -1, 8]])
+    errors = errors_on(drawn, Tile(0, 0, 0), 0, 1.0, points)
+    np.testing.assert_array_equal(errors, [2.0, 3.0, np.nan, np.nan])
+
+
+def test_points_over_a_hole_are_counted_and_told(tmp_path, monkeypatch):
+    """They counted as exact."""
+    from wavelet_gis.tiles.globe import tileset
+
+    def with_a_hole(mesh, tile, zoom):
+        drawn = on_tile(mesh, tile, zoom)
+        if (tile.zoom, zoom) != (9, 12):
+            return drawn
+        middle = drawn.faces[len(drawn.faces) // 2]
+        return drawn._replace(faces=drawn.faces[~(drawn.faces == middle[0]).any(axis=1)])
+
+    monkeypatch.setattr(tileset, "on_tile", with_a_hole)
+    dem = wg.open(write_tif(tmp_path / "dem.tif", hills()))
+    with pytest.warns(TerrainWarning, match="points are over no triangle"):
+        figures = wg.terrain_tiles(dem, tmp_path / "out", zoom=12, max_error=2.0)
+    assert [zoom.zoom for zoom in figures.zooms if zoom.n_uncovered] == [9]
+    at_9 = figures.figures()["zooms"][9]
+    assert at_9["n_uncovered"] > 0
+
+
+def test_vertices_without_faces_are_met_like_others(tmp_path):
+    """They were left out: no tile knew of them, and no error told of it."""
+    values = np.full((60, 60), -9999.0)
+    values[:20, :20] = hills(20, 20)
+    values[40, 45] = values[41, 46] = 333.0
+    path = write_tif(tmp_path / "dem.tif", values, nodata=-9999.0)
+    figures = wg.terrain_tiles(wg.open(path), tmp_path / "out", zoom=16, max_error=1.0)
+    _, tiles = read_set(tmp_path / "out")
+    place = Transformer.from_crs("EPSG:32632", "EPSG:4326", always_xy=True)
+    points = np.column_stack([*place.transform([500455.0], [5099595.0]), [333.0]])
+    heights = [heights_on(tile, key, points) for key, tile in tiles.items() if key[0] == 16]
+    assert abs(np.nanmax(np.concatenate(heights)) - 333.0) <= figures.zooms[-1].max_error <= 1.0
 
 
 def test_refusals(tmp_path):

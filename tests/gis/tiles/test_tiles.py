@@ -14,12 +14,18 @@ import rasterio
 from gis.samples import UTM, assert_same_raster, hills, write_tif
 
 import wavelet_gis as wg
+from wavelet_core import TriangleMesh
 from wavelet_core.errors import MissingDependencyError, OptionError
+from wavelet_core.metrics import surface_errors
 from wavelet_gis.errors import InputFileError, OutputFileError, TerrainWarning
 from wavelet_gis.io.pyramid.pyramid_file import read_levels, read_pyramid
+from wavelet_gis.io.raster import write_dem
+from wavelet_gis.tiles.area import area_of
 from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.piece import cells_of, join
 from wavelet_gis.tiles.plan import Piece, TilePlan
+from wavelet_gis.tiles.read import terrain_of_region
+from wavelet_gis.tiles.within import _errors_within
 
 SIZE = 32
 
@@ -317,6 +323,84 @@ def test_one_tile_is_the_plain_pyramid(tmp_path):
     plain = wg.analyse(wg.open(path))
     assert tiled.index.n_levels == plain.n_levels
     assert wg.extract_region(tiled.index).surface.mesh == plain.geo.pyramid.mesh(0)
+
+
+@pytest.fixture(scope="module")
+def islands(tmp_path_factory):
+    """Tiles that have cells but no three side by side: single ones, and a strip one cell wide."""
+    values = np.full((60, 80), -9999.0)
+    values[:32, :32] = hills(32, 32)
+    values[40, 50], values[50, 10], values[45, 52:60] = 300.0, 222.0, np.arange(8) + 290.0
+    path = write_tif(tmp_path_factory.mktemp("islands") / "d.tif", values, nodata=-9999.0)
+    return path, wg.tile_rasters(path, path.parent / "t", tile=20, levels=3)
+
+
+def test_single_cells_come_back_from_tiles_that_have_nothing_else(islands, tmp_path):
+    """They came back as nodata, called "the original", since such tiles counted as empty."""
+    path, tiled = islands
+    write_dem(
+        tmp_path / "back.tif",
+        wg.restored_raster(tiled.index),
+        tiled.index.plan.coordinate_system.wkt,
+    )
+    assert_same_raster(path, tmp_path / "back.tif")
+
+
+def test_single_cells_are_vertices_of_every_level_and_region(islands):
+    _, tiled = islands
+    places = {(500000 + 10 * (c + 0.5), 5100000 - 10 * (r + 0.5)) for r, c in ((40, 50), (50, 10))}
+    for rule in ({"level": 0}, {"level": tiled.index.n_levels}, {"max_error": 0.5}):
+        mesh = wg.extract_region(tiled.index, **rule).surface.file_mesh
+        assert places <= set(map(tuple, mesh.vertices[:, :2].tolist()))
+    box = (500090.0, 5099480.0, 500120.0, 5099510.0)
+    part = wg.extract_region(tiled.index, level=2, bbox=box).surface.file_mesh
+    assert part.vertices.tolist() == [[500105.0, 5099495.0, 222.0]]
+
+
+def test_a_vertex_of_the_input_without_a_face_is_beyond_any_tolerance(tiled):
+    """It had no error, so a group with a hole passed as one that keeps the tolerance."""
+    index = tiled.index
+    top = index.plan.pieces(index.plan.n_stages - 1)[0]
+    pyramid = read_levels(index.path(top), 0).pyramid
+    mesh, area = pyramid.mesh(pyramid.n_levels), area_of(index.plan, None, None)
+    assert _errors_within(index, area, top, mesh, 1e9) is not None
+    assert _errors_within(index, area, top, mesh, 0.01) is None
+    # Narrower by rounding alone: what is beside it then is measured at its border.
+    middle = mesh.vertices.mean(axis=0)
+    shrunk = middle + (mesh.vertices - middle) * [1 - 1e-9, 1 - 1e-9, 1.0]
+    narrower = TriangleMesh(shrunk, mesh.faces)
+    assert np.isnan(surface_errors(narrower, mesh.vertices)).any()
+    found = _errors_within(index, area, top, narrower, 1e9)
+    assert found is not None
+    assert all(np.isfinite(part.errors).all() for part in found)
+    holed = TriangleMesh(mesh.vertices, np.delete(mesh.faces, [30, 31, 32], axis=0))
+    assert _errors_within(index, area, top, holed, 1e9) is None
+
+
+def test_a_tolerance_counts_the_input_of_pyramids_without_a_record(dem, tmp_path):
+    """Of such pieces the vertices of the coarsest level were taken for those of the input."""
+    tiled = wg.tile_rasters(
+        dem, tmp_path / "t", tile=SIZE, levels=3, wavelets={"partition": "random"}
+    )
+    values = wg.restored_raster(tiled.index)
+    rows, columns = np.nonzero(values.valid)
+    x, y = values.geometry.centres(columns, rows)
+    points = np.column_stack([x, y, values.values[rows, columns]]).astype(float)
+    for limit in (1.0, 5.0, 20.0):
+        surface = wg.extract_region(tiled.index, max_error=limit).surface
+        errors = np.abs(surface_errors(surface.file_mesh, points))
+        assert errors.max() <= limit * (1 + 1e-6)
+        assert surface.errors.max_error == pytest.approx(errors.max(), rel=1e-6)
+
+
+def test_a_set_of_single_cells_is_no_terrain_for_a_globe(tmp_path):
+    """It ended in a division by zero."""
+    values = np.full((30, 30), -9999.0)
+    values[::7, ::9] = 300.0
+    path = write_tif(tmp_path / "d.tif", values, nodata=-9999.0)
+    tiled = wg.tile_rasters(path, tmp_path / "t", tile=16)
+    with pytest.raises(InputFileError, match="there is no triangle"):
+        wg.terrain_tiles(terrain_of_region(tiled.index), tmp_path / "out")
 
 
 def test_refusals(dem, tmp_path):

@@ -1,5 +1,6 @@
 """What toolbox, dialogs and log tell, and that they do while something is computed."""
 
+import numpy as np
 import pytest
 from qgis_layers import Log, hills, write_raster
 
@@ -101,6 +102,22 @@ def test_an_error_names_parameters_as_the_dialog_does(provider):
     assert provider.algorithm("analysedem").in_words(error) == (
         "'Stop at this RMSE' is -1; leave out 'Stop at this number of vertices'."
     )
+
+
+@pytest.mark.parametrize("silence", [0, 5, 40])
+@pytest.mark.parametrize("step", [1e-5, 1e-3, 2e-2])
+def test_the_bar_never_rests_until_the_work_has_caught_up(qgis, silence, step):
+    """It rested for 8 s: the clock had moved it ahead of the first word of a simplification."""
+    from plugin.qgis_io.background import Bar
+
+    bar = Bar(0.0)
+    places = [
+        bar.at(max(tenth / 10 - silence, 0) * step, tenth / 10)
+        for tenth in range(10 * (silence + 45))
+    ]
+    each_second = np.diff(places[::10])
+    assert (each_second > 1e-4).all()
+    assert places[-1] < 1.0
 
 
 def test_computing_answers_a_cancel_and_moves_the_bar(qgis):

@@ -93,10 +93,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     )
     errors = ""
     if surface.errors is not None:
-        errors = (
-            f"; RMSE {surface.errors.rmse:.4g}, largest error {surface.errors.max_error:.4g} "
-            f"({surface.geo.vertical_unit}) at all input points"
-        )
+        errors = f"; {surface.errors.told(surface.geo.vertical_unit)}"
     figures = {"level": surface.level, **surface.figures(), **cells}
     shape = f", {cells['n_rows']} x {cells['n_columns']} cells" if cells else ""
     console.say(

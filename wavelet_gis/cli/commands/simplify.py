@@ -134,10 +134,10 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     _say_rounds(tin, console)
     save(tin, arguments.output, overwrite=arguments.overwrite, **options)
     figures = {**tin.figures(), "seconds": round(perf_counter() - began, 3)}
+    assert tin.errors is not None
     console.say(
         f"{figures['n_vertices']:,} of {figures['n_input_vertices']:,} vertices, "
-        f"{figures['n_triangles']:,} triangles; RMSE {figures['rmse']:.4g}, largest error "
-        f"{figures['max_error']:.4g} ({terrain.vertical_unit}) at all input points; "
+        f"{figures['n_triangles']:,} triangles; {tin.errors.told(terrain.vertical_unit)}; "
         f"{figures['seconds']:.1f} s; {arguments.output}"
     )
     if tin.quality is not None:

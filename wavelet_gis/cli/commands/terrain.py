@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             progress=progress,
         )
     console.table(
-        ("zoom", "tiles", "vertices", "bytes", "promised (m)", "largest error (m)"),
+        ("zoom", "tiles", "vertices", "bytes", "promised (m)", "largest error (m)", "uncovered"),
         list(map(tuple, tiles.zooms)),
     )
     figures = tiles.figures()

@@ -10,9 +10,10 @@ from __future__ import annotations
 import hashlib
 import lzma
 import math
+import threading
 import zlib
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any, NamedTuple
@@ -30,6 +31,7 @@ __all__ = [
     "decode_blocks",
     "encode_array",
     "header_of",
+    "work_of",
 ]
 
 #: Uncompressed bytes in a chunk, at most. Small enough to be undone in memory twice over.
@@ -55,6 +57,12 @@ LZMA_FILTERS = [
         "mode": lzma.MODE_NORMAL, "nice_len": 32, "mf": lzma.MF_HC4, "depth": 4,
     }
 ]  # fmt: skip
+
+#: LZMA takes so many bytes at a time, so that it can be stopped; it makes the same of them.
+_PIECE_BYTES = 1 << 17
+
+#: Seconds after which a thread that waits for others reports what they have done.
+_LOOK = 0.1
 
 #: Rows by which the filter of an array is chosen.
 _SAMPLE_ROWS = 1 << 16
@@ -91,6 +99,38 @@ FILTERS = {
     "delta_lzma": Filter(1, is_zigzag=True, is_lzma=True),
     "delta2_lzma": Filter(2, is_zigzag=True, is_lzma=True),
 }
+
+
+#: Takes a number of bytes.
+Packed = Callable[[int], None]
+
+
+class Tally:
+    """The bytes that several threads have compressed, reported by the one that waits for them.
+
+    Parameters
+    ----------
+    packed : callable, optional
+        Called with those since it was called before.
+    """
+
+    def __init__(self, packed: Packed | None = None) -> None:
+        self._packed = packed
+        self._n_bytes = 0
+        self._lock = threading.Lock()
+        self.is_stopped = False
+
+    def add(self, n_bytes: int) -> None:
+        """Count bytes."""
+        with self._lock:
+            self._n_bytes += n_bytes
+
+    def report(self) -> None:
+        """Say how many there are since it was asked before."""
+        with self._lock:
+            n_bytes, self._n_bytes = self._n_bytes, 0
+        if self._packed is not None:
+            self._packed(n_bytes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,24 +229,45 @@ def header_of(array: NDArray[Any]) -> ArrayHeader:
     return ArrayHeader(dtype.str, tuple(array.shape), filter_name, rows)
 
 
-def closest_header(array: NDArray[Any]) -> ArrayHeader:
+def closest_header(
+    array: NDArray[Any], pool: ThreadPoolExecutor | None = None, packed: Packed | None = None
+) -> ArrayHeader:
     """Return the header under which an array takes the fewest bytes, judged by part of it.
 
     Parameters
     ----------
     array : integers, floats or booleans, one or two dimensions
+    pool, packed : optional
+        As for `encode_array`.
     """
     header = header_of(array)
-    start = max((len(array) - _SAMPLE_ROWS) // 2, 0)
-    sample = array[start : start + _SAMPLE_ROWS]
+    sample = _sample(array)
     if not sample.nbytes:
         return header
-    sizes = {name: len(_pack(sample, replace(header, filter=name))) for name in FILTERS}
+    tally = Tally(packed)
+
+    def size(name: str) -> int:
+        return len(_pack(sample, replace(header, filter=name), tally))
+
+    sizes = dict(zip(FILTERS, _in_order(size, FILTERS, pool, tally), strict=True))
     return replace(header, filter=min(sizes, key=lambda name: (sizes[name], name)))
 
 
+def work_of(array: NDArray[Any]) -> int:
+    """Return the bytes that are compressed for an array, by `closest_header` and then as it is."""
+    return array.nbytes + len(FILTERS) * _sample(array).nbytes
+
+
+def _sample(array: NDArray[Any]) -> NDArray[Any]:
+    start = max((len(array) - _SAMPLE_ROWS) // 2, 0)
+    return array[start : start + _SAMPLE_ROWS]
+
+
 def encode_array(
-    array: NDArray[Any], pool: ThreadPoolExecutor | None = None, header: ArrayHeader | None = None
+    array: NDArray[Any],
+    pool: ThreadPoolExecutor | None = None,
+    header: ArrayHeader | None = None,
+    packed: Packed | None = None,
 ) -> Iterator[bytes]:
     """Yield the compressed chunks of an array, in order.
 
@@ -218,11 +279,15 @@ def encode_array(
         Compresses several chunks at once; the result is the same.
     header : ArrayHeader, optional
         Under which; by default that of `header_of`.
+    packed : callable, optional
+        Called, in the thread that takes the chunks, with the bytes that were compressed since it
+        was called before. It may raise, to stop.
     """
     header = header_of(array) if header is None else header
     starts = range(0, header.shape[0], header.chunk_rows) if header.n_bytes else range(0)
     blocks = (array[start : start + header.chunk_rows] for start in starts)
-    return _in_order(lambda block: _pack(block, header), blocks, pool)
+    tally = Tally(packed)
+    return _in_order(lambda block: _pack(block, header, tally), blocks, pool, tally)
 
 
 def decode_array(
@@ -277,7 +342,7 @@ def decode_blocks(
         Expands several chunks at once.
     """
     n_chunks = 0
-    for block in _in_order(lambda job: _unpack(job, header), enumerate(chunks), pool):
+    for block in _in_order(lambda job: _unpack(job, header), enumerate(chunks), pool, Tally()):
         yield block
         n_chunks += 1
     if n_chunks != header.n_chunks:
@@ -311,7 +376,7 @@ def array_checksum(header: ArrayHeader, blocks: Iterable[NDArray[Any]]) -> str:
     return digest.hexdigest()
 
 
-def _pack(block: NDArray[Any], header: ArrayHeader) -> bytes:
+def _pack(block: NDArray[Any], header: ArrayHeader, tally: Tally) -> bytes:
     dtype, steps = np.dtype(header.dtype), FILTERS[header.filter]
     bits = np.ascontiguousarray(block, dtype=dtype).view(f"<u{dtype.itemsize}")
     if steps.is_zigzag:
@@ -323,10 +388,26 @@ def _pack(block: NDArray[Any], header: ArrayHeader) -> bytes:
     if steps.is_zigzag:
         bits = _zigzag(bits)
     shuffled = bits.reshape(-1).view(np.uint8).reshape(-1, dtype.itemsize).T
-    raw = np.ascontiguousarray(shuffled).data
+    raw = np.ascontiguousarray(shuffled).reshape(-1).data
     if steps.is_lzma:
-        return lzma.compress(raw, format=lzma.FORMAT_RAW, filters=LZMA_FILTERS)
-    return zlib.compress(raw, COMPRESSION_LEVEL)
+        return _lzma(raw, tally)
+    packed = zlib.compress(raw, COMPRESSION_LEVEL)
+    tally.add(raw.nbytes)
+    return packed
+
+
+def _lzma(raw: memoryview, tally: Tally) -> bytes:
+    """Compress in pieces; nothing comes of it where it is stopped."""
+    packer = lzma.LZMACompressor(lzma.FORMAT_RAW, filters=LZMA_FILTERS)
+    packed = []
+    for start in range(0, raw.nbytes, _PIECE_BYTES):
+        if tally.is_stopped:
+            return b""
+        piece = raw[start : start + _PIECE_BYTES]
+        packed.append(packer.compress(piece))
+        tally.add(piece.nbytes)
+    packed.append(packer.flush())
+    return b"".join(packed)
 
 
 def _unpack(job: tuple[int, bytes], header: ArrayHeader) -> NDArray[Any]:
@@ -401,14 +482,29 @@ def _expand_lzma(chunk: bytes, n_bytes: int) -> tuple[bytes, bool]:
 
 
 def _in_order(
-    work: Callable[[Any], Any], jobs: Iterable[Any], pool: ThreadPoolExecutor | None
+    work: Callable[[Any], Any],
+    jobs: Iterable[Any],
+    pool: ThreadPoolExecutor | None,
+    tally: Tally,
 ) -> Iterator[Any]:
     """Yield the results in the order of the jobs, at most a few jobs ahead of the reader."""
     if pool is None:
-        yield from map(work, jobs)
+        for job in jobs:
+            result = work(job)
+            tally.report()
+            yield result
         return
     remaining = iter(jobs)
-    waiting = [pool.submit(work, job) for job in islice(remaining, 4)]
-    while waiting:
-        yield waiting.pop(0).result()
-        waiting.extend(pool.submit(work, job) for job in islice(remaining, 1))
+    waiting: list[Future[Any]] = [pool.submit(work, job) for job in islice(remaining, 4)]
+    try:
+        while waiting:
+            while not waiting[0].done():
+                wait(waiting[:1], timeout=_LOOK)
+                tally.report()
+            yield waiting.pop(0).result()
+            waiting.extend(pool.submit(work, job) for job in islice(remaining, 1))
+        tally.report()
+    finally:  # who stops before the end need not wait for the others
+        tally.is_stopped = True
+        for job in waiting:
+            job.cancel()

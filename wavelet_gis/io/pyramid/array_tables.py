@@ -67,9 +67,12 @@ class Entry(NamedTuple):
 
 
 def write_arrays(
-    connection: sqlite3.Connection, arrays: Mapping[str, NDArray[Any]], pool: ThreadPoolExecutor
-) -> Iterator[int]:
-    """Write arrays, each as small as it can be, yielding the bytes of each that is done.
+    connection: sqlite3.Connection,
+    arrays: Mapping[str, NDArray[Any]],
+    pool: ThreadPoolExecutor,
+    packed: Callable[[int], None],
+) -> None:
+    """Write arrays, each as small as it can be.
 
     Parameters
     ----------
@@ -79,9 +82,11 @@ def write_arrays(
         By name.
     pool : ThreadPoolExecutor
         Compresses.
+    packed : callable
+        Called with bytes that were compressed; those of an array are `work_of` it, or a few more.
     """
     for name, array in arrays.items():
-        header, chunks = _smallest(array, pool)
+        header, chunks = _smallest(array, pool, packed)
         cursor = connection.execute(
             "INSERT INTO wavelet_arrays (name, dtype, shape, filter, chunk_rows, checksum) "
             "VALUES (?,?,?,?,?,?)",
@@ -98,20 +103,21 @@ def write_arrays(
             "INSERT INTO wavelet_chunks (array_id, sequence, data) VALUES (?,?,?)",
             ((cursor.lastrowid, sequence, chunk) for sequence, chunk in enumerate(chunks)),
         )
-        yield array.nbytes
 
 
-def _smallest(array: NDArray[Any], pool: ThreadPoolExecutor) -> tuple[ArrayHeader, Iterable[bytes]]:
+def _smallest(
+    array: NDArray[Any], pool: ThreadPoolExecutor, packed: Callable[[int], None]
+) -> tuple[ArrayHeader, Iterable[bytes]]:
     """Return the header of an array and its chunks, never smaller than a reader believes."""
-    header = closest_header(array)
-    chunks = encode_array(array, pool, header)
+    header = closest_header(array, pool, packed)
+    chunks = encode_array(array, pool, header, packed)
     if not FILTERS[header.filter].is_lzma:
         return header, chunks
     kept = list(chunks)
     if header.n_bytes <= MAX_EXPANSION * sum(map(len, kept)):
         return header, kept
     plain = header_of(array)
-    return plain, encode_array(array, pool, plain)
+    return plain, encode_array(array, pool, plain, packed)
 
 
 def read_entries(connection: sqlite3.Connection, *, with_checksums: bool) -> dict[str, Entry]:
@@ -288,7 +294,7 @@ class WrittenArrays(StoredArrays):
     originals : mapping of str to array
         What was written.
     verified : callable
-        Called with the bytes of each array that is verified.
+        Called with the bytes of each piece that is verified.
     """
 
     def __init__(
@@ -307,6 +313,10 @@ class WrittenArrays(StoredArrays):
     def _read(self, name: str, entry: Entry) -> NDArray[Any]:
         self._checked_size(entry)
         blocks = decode_blocks(entry.header, self._chunks(entry.array_id), self._pool)
-        self._compare(entry, array_checksum(entry.header, blocks))
-        self._verified(entry.header.n_bytes)
+        self._compare(entry, array_checksum(entry.header, self._watched(blocks)))
         return self._originals[name].astype(entry.header.dtype, copy=False)
+
+    def _watched(self, blocks: Iterable[NDArray[Any]]) -> Iterator[NDArray[Any]]:
+        for block in blocks:
+            yield block
+            self._verified(block.nbytes)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core import Progress
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.point_faces import (
     SortedEdges,
@@ -21,6 +22,7 @@ from wavelet_core.mesh.point_faces import (
     sorted_edges,
     triangles_of,
 )
+from wavelet_core.progress import part_of, report
 
 __all__ = ["N_EDGE_CLASSES", "FaceRecord", "decode_faces", "encode_faces"]
 
@@ -32,6 +34,9 @@ N_EDGE_CLASSES = 8
 
 #: Coordinates beyond this have squares that are no exact floats.
 LARGEST_COORDINATE = 2**25
+
+#: Shares of the time after which the edges are sorted, and every pair is answered for.
+_OF_EDGES, _OF_PAIRS = 0.1, 0.7
 
 
 class FaceRecord(NamedTuple):
@@ -47,7 +52,9 @@ class FaceRecord(NamedTuple):
     holes: NDArray[np.int64]
 
 
-def encode_faces(points: NDArray[np.int64], faces: NDArray[np.integer]) -> FaceRecord | None:
+def encode_faces(
+    points: NDArray[np.int64], faces: NDArray[np.integer], progress: Progress | None = None
+) -> FaceRecord | None:
     """Return the record of faces; None where it would not give them back.
 
     Parameters
@@ -56,21 +63,26 @@ def encode_faces(points: NDArray[np.int64], faces: NDArray[np.integer]) -> FaceR
         X and Y, no two of them equal.
     faces : (m, 3) integers
         Counter-clockwise, as `wavelet_core.mesh.triangulation.canonical_faces` orders them.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     if not _can_be_encoded(points):
         return None
     n = len(points)
     x, y = _local(points)
     edges = sorted_edges(_sides(faces), n)
-    answers, far = _answers_by(x, y, edges)
-    triangles = triangles_of(x, y, edges)
+    report(progress, _OF_EDGES)
+    answers, far = _answers_by(x, y, edges, part_of(progress, _OF_EDGES, _OF_PAIRS))
+    triangles = triangles_of(x, y, edges, part_of(progress, _OF_PAIRS, 1.0))
     is_face = _are_among(faces, triangles, n)
     if np.count_nonzero(is_face) != len(faces) or not np.array_equal(triangles[is_face], faces):
         return None
     return FaceRecord(answers, far, np.flatnonzero(~is_face).astype(np.int64))
 
 
-def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.int64]:
+def decode_faces(
+    points: NDArray[np.int64], record: FaceRecord, progress: Progress | None = None
+) -> NDArray[np.int64]:
     """Return the faces that a record describes.
 
     Parameters
@@ -78,6 +90,8 @@ def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.in
     points : (n, 2) int64
     record : FaceRecord
         Of any origin.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -86,8 +100,8 @@ def decode_faces(points: NDArray[np.int64], record: FaceRecord) -> NDArray[np.in
     """
     _require(_can_be_encoded(points), "points that have no faces")
     x, y = _local(points)
-    edges = _edges_from(x, y, record)
-    triangles = triangles_of(x, y, edges)
+    edges = _edges_from(x, y, record, part_of(progress, 0.0, _OF_PAIRS))
+    triangles = triangles_of(x, y, edges, part_of(progress, _OF_PAIRS, 1.0))
     is_face = np.ones(len(triangles), dtype=bool)
     holes = record.holes
     _require(
@@ -104,19 +118,27 @@ def _sides(faces: NDArray[np.integer]) -> NDArray[np.int32]:
 
 
 def _answers_by(
-    x: NDArray[np.float64], y: NDArray[np.float64], edges: SortedEdges
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    edges: SortedEdges,
+    progress: Progress | None,
 ) -> tuple[tuple[NDArray[np.uint8], ...], NDArray[np.int32]]:
     """Return the answers to all questions, and the edges that nobody asks about."""
-    pairs = near_pairs(x, y, N_NEAREST)
-    joined, is_asked = edges.are_joined(pairs)
+    pairs = near_pairs(x, y, N_NEAREST, part_of(progress, 0.0, 0.9))
+    joined, is_asked = edges.are_joined(pairs, part_of(progress, 0.9, 1.0))
     answers = tuple(joined[pairs.classes == of_class] for of_class in range(N_EDGE_CLASSES))
     return answers, edges.rows()[~is_asked]
 
 
-def _edges_from(x: NDArray[np.float64], y: NDArray[np.float64], record: FaceRecord) -> SortedEdges:
+def _edges_from(
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    record: FaceRecord,
+    progress: Progress | None,
+) -> SortedEdges:
     """Return the edges that a record of any origin describes."""
     n = len(x)
-    pairs = near_pairs(x, y, N_NEAREST)
+    pairs = near_pairs(x, y, N_NEAREST, part_of(progress, 0.0, 0.9))
     joined = np.zeros(pairs.classes.shape, dtype=bool)
     for of_class, answers in enumerate(record.answers):
         asked = pairs.classes == of_class

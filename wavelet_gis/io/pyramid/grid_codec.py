@@ -20,7 +20,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core import Progress
 from wavelet_core.errors import PyramidError
+from wavelet_core.progress import report
 
 __all__ = [
     "DIVISORS",
@@ -150,7 +152,9 @@ class Residuals(NamedTuple):
     classes: tuple[int, ...]
 
 
-def encode_grid(integers: NDArray[np.int64], valid: NDArray[np.bool_]) -> Residuals:
+def encode_grid(
+    integers: NDArray[np.int64], valid: NDArray[np.bool_], progress: Progress | None = None
+) -> Residuals:
     """Return the residuals of the valid cells, in whichever order takes fewer bytes.
 
     Parameters
@@ -158,6 +162,8 @@ def encode_grid(integers: NDArray[np.int64], valid: NDArray[np.bool_]) -> Residu
     integers : (n_valid,) int64
         In row-major order.
     valid : (n_rows, n_columns) bool
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     grid = np.zeros(valid.shape, dtype=np.int64)
     grid[valid] = integers
@@ -171,6 +177,8 @@ def encode_grid(integers: NDArray[np.int64], valid: NDArray[np.bool_]) -> Residu
             residual = cells - predicted
         parts.append(((residual << 1) ^ (residual >> 63)).view(np.uint64))
         reliefs.append(relief)
+        n_done = sum(map(len, parts))
+        report(progress, 0.5 * n_done / max(len(integers), 1))
         return cells
 
     _walk(grid, valid, keep)
@@ -178,13 +186,17 @@ def encode_grid(integers: NDArray[np.int64], valid: NDArray[np.bool_]) -> Residu
         part[np.argsort(relief, kind="stable")] for part, relief in zip(parts, reliefs, strict=True)
     ]
     first = _as_bytes(np.concatenate(by_pass), ())
+    report(progress, 0.6)
     if len(integers) > MOST_TRIED:
         return first
     classes = np.searchsorted(RELIEF_CLASSES, np.concatenate(reliefs), side="right")
     counts = np.bincount(classes, minlength=len(RELIEF_CLASSES) + 1)
     order = np.argsort(classes, kind="stable")
     second = _as_bytes(np.concatenate(parts)[order], tuple(counts.tolist()))
-    return min(first, second, key=lambda one: len(zlib.compress(one.numbers.tobytes(), 6)))
+    report(progress, 0.7)
+    n_bytes = len(zlib.compress(first.numbers.tobytes(), 6))
+    report(progress, 0.85)
+    return first if n_bytes <= len(zlib.compress(second.numbers.tobytes(), 6)) else second
 
 
 def _as_bytes(residuals: NDArray[np.uint64], classes: tuple[int, ...]) -> Residuals:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
@@ -35,6 +35,7 @@ from wavelet_gis.io.geopackage import (
     open_untrusted,
     register_attributes_table,
 )
+from wavelet_gis.io.pyramid.array_codec import work_of
 from wavelet_gis.io.pyramid.array_tables import (
     StoredArrays,
     WrittenArrays,
@@ -111,7 +112,7 @@ def write_pyramid(
     metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, _SHARE_OF_ENCODING))
     texts = {name: json.dumps(value, allow_nan=False, sort_keys=True) for name, value in
              metadata.items()}  # fmt: skip
-    total, done = sum(array.nbytes for array in arrays.values()) or 1, 0
+    total = sum(array.nbytes for array in arrays.values())
     is_small = is_alone and total <= _SMALL_BYTES
     create_geopackage(path, SMALL_PAGE_BYTES if is_small else PAGE_BYTES)
     with open_for_writing(path) as connection, _pool() as pool:
@@ -119,10 +120,9 @@ def write_pyramid(
         for table, description in TABLES.items():
             register_attributes_table(connection, table, description)
         write_level_rows(connection, geo)
-        for n_bytes in write_arrays(connection, arrays, pool):
-            done += n_bytes
-            share = _SHARE_OF_ENCODING + (_SHARE_OF_WRITING - _SHARE_OF_ENCODING) * done / total
-            report(progress, share, _CANCELLED)
+        work = sum(map(work_of, arrays.values()))
+        of_arrays = part_of(progress, _SHARE_OF_ENCODING, _SHARE_OF_WRITING)
+        write_arrays(connection, arrays, pool, _share_of(work, of_arrays))
         entries = read_entries(connection, with_checksums=True)
         checksums = checksums_of(texts, read_level_rows(connection), entries)
         texts["checksums"] = json.dumps(checksums, sort_keys=True)
@@ -134,13 +134,15 @@ def write_pyramid(
     read_back(path, partial(_read_back, geo=geo, arrays=arrays, total=total, progress=progress))
 
 
-def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
+def read_pyramid(path: str | os.PathLike[str], progress: Progress | None = None) -> GeoPyramid:
     """Return the pyramid in a pyramid file, everything in it checked.
 
     Parameters
     ----------
     path : path
         A GeoPackage of any origin.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -150,16 +152,18 @@ def read_pyramid(path: str | os.PathLike[str]) -> GeoPyramid:
         When its parts are damaged, are not those that were written, or do not fit together.
     """
     with _opened(path) as (contents, arrays):
-        return pyramid_from_parts(contents, arrays)
+        return pyramid_from_parts(contents, arrays, progress=progress)
 
 
-def read_input(path: str | os.PathLike[str]) -> GeoPyramid:
+def read_input(path: str | os.PathLike[str], progress: Progress | None = None) -> GeoPyramid:
     """Return what the input comes back from, without the levels where the file allows it.
 
     Parameters
     ----------
     path : path
         A GeoPackage of any origin.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Returns
     -------
@@ -173,10 +177,12 @@ def read_input(path: str | os.PathLike[str]) -> GeoPyramid:
         As `read_pyramid`.
     """
     with _opened(path) as (contents, arrays):
-        return input_from_parts(contents, arrays)
+        return input_from_parts(contents, arrays, progress)
 
 
-def read_levels(path: str | os.PathLike[str], level: int) -> GeoPyramid:
+def read_levels(
+    path: str | os.PathLike[str], level: int, progress: Progress | None = None
+) -> GeoPyramid:
     """Return a pyramid of all levels up to one, or of more, from as little of its file as may be.
 
     Parameters
@@ -185,6 +191,8 @@ def read_levels(path: str | os.PathLike[str], level: int) -> GeoPyramid:
         A GeoPackage of any origin.
     level : int
         The finest that is wanted.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Returns
     -------
@@ -198,7 +206,7 @@ def read_levels(path: str | os.PathLike[str], level: int) -> GeoPyramid:
         As `read_pyramid`.
     """
     with _opened(path) as (contents, arrays):
-        return levels_from_parts(contents, arrays, level)
+        return levels_from_parts(contents, arrays, level, progress)
 
 
 def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -219,6 +227,18 @@ def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
         return summary
 
 
+def _share_of(total: int, progress: Progress | None) -> Callable[[int], None]:
+    """Return a function that takes numbers of bytes and reports the share of all that are done."""
+    done = 0
+
+    def count(n_bytes: int) -> None:
+        nonlocal done
+        done += n_bytes
+        report(progress, min(done / max(total, 1), 1.0), _CANCELLED)
+
+    return count
+
+
 def _read_back(
     path: str | os.PathLike[str],
     geo: GeoPyramid,
@@ -227,14 +247,7 @@ def _read_back(
     progress: Progress | None,
 ) -> None:
     """Have the reader take a file that was just written, without room for its arrays."""
-    done = 0
-
-    def verified(n_bytes: int) -> None:
-        nonlocal done
-        done += n_bytes
-        share = min(done / total, 1.0)
-        report(progress, _SHARE_OF_WRITING + (1 - _SHARE_OF_WRITING) * share, _CANCELLED)
-
+    verified = _share_of(total, part_of(progress, _SHARE_OF_WRITING, 1.0))
     try:
         with open_untrusted(path) as connection, _pool() as pool:
             contents = Contents(connection)
@@ -267,6 +280,8 @@ def _naming(path: str | os.PathLike[str]) -> Iterator[None]:
         yield
     except InputFileError as error:
         raise InputFileError(f"{path}: {error}") from error
+    except Cancelled:
+        raise
     except WaveletError as error:
         raise PyramidError(f"{path}: {error}") from error
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:

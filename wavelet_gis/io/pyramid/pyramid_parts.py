@@ -25,6 +25,7 @@ from wavelet_core.metrics import LevelErrors
 from wavelet_core.partition._mutable_level import CollapseStep
 from wavelet_core.partition.plan_record import places_of_steps, steps_at_places
 from wavelet_core.partition.stopping import REASONS, StopRecord
+from wavelet_core.progress import part_of, report
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid.array_tables import StoredArrays
@@ -78,19 +79,34 @@ _CELLS = "cells"
 #: What the metadata say of steps whose filters follow from their collapses.
 _PLACES = "places"
 
+#: Shares of the time that the parts of a pyramid take, after which its source is told, and after
+#: which its record is, where that was not kept; the faces of points take the rest.
+_SHARE_OF_SOURCE, _SHARE_OF_RECORD = 0.2, 0.4
+
+#: Of the time in which a pyramid of points is read: its faces.
+_SHARE_OF_FACES = 0.3
+
 _NO_INPUT = "the pyramid is described by an input that the file does not hold."
 
 
 def pyramid_to_parts(
     geo: GeoPyramid, progress: Progress | None = None
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """Return the metadata and the arrays of a pyramid file, by name."""
+    """Return the metadata and the arrays of a pyramid file, by name.
+
+    Parameters
+    ----------
+    geo : GeoPyramid
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+    """
     pyramid = geo.pyramid
     source, arrays = geo.origin.to_parts()
     has_cells = False
-    shrink_source(geo, source, arrays)
+    shrink_source(geo, source, arrays, part_of(progress, 0.0, _SHARE_OF_SOURCE))
     mesh = geo.origin.kept_mesh(geo.frame, pyramid.faces)
-    record = None if mesh is None else record_of(pyramid, mesh, progress)
+    of_record = part_of(progress, _SHARE_OF_SOURCE, _SHARE_OF_RECORD)
+    record = None if mesh is None else record_of(pyramid, mesh, of_record)
     if record is None:
         recorded = None
         arrays.update(placed_arrays(pyramid) or listed_arrays(pyramid))
@@ -103,7 +119,11 @@ def pyramid_to_parts(
         recorded, record_arrays = record_to_parts(record)
         arrays.update(record_arrays)
         if geo.origin.points is not None:
-            of_faces, face_arrays = faces_to_parts(geo.origin.points.kept_places, pyramid.faces)
+            of_faces, face_arrays = faces_to_parts(
+                geo.origin.points.kept_places,
+                pyramid.faces,
+                part_of(progress, _SHARE_OF_RECORD, 1.0),
+            )
             recorded.update(of_faces)
             arrays.update(face_arrays)
     if pyramid.locked is not None:
@@ -148,18 +168,32 @@ def pyramid_to_parts(
 
 
 def pyramid_from_parts(
-    contents: Contents, arrays: StoredArrays, written: Pyramid | None = None
+    contents: Contents,
+    arrays: StoredArrays,
+    written: Pyramid | None = None,
+    progress: Progress | None = None,
 ) -> GeoPyramid:
-    """Return what a file holds; ``written``, if given, is the pyramid that its record describes."""
+    """Return what a file holds.
+
+    Parameters
+    ----------
+    contents : Contents
+        What it says in words.
+    arrays : StoredArrays
+    written : Pyramid, optional
+        The one that its record describes, if that is known.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+    """
     metadata = contents.metadata
     fields = metadata.fields("source")
     check_source(fields)
     origin = origin_from_parts(fields, source_arrays(fields, arrays))
     frame = LocalFrame.from_dict(metadata.fields("frame"))
     if "record" in metadata:
-        pyramid = _recorded(contents, arrays, origin, frame, written)
+        pyramid = _recorded(contents, arrays, origin, frame, written, progress)
     else:
-        pyramid = _from_lists(contents, arrays, origin, frame)
+        pyramid = _from_lists(contents, arrays, origin, frame, progress)
     n_vertices = pyramid.n_vertices(pyramid.n_levels)
     if origin.n_vertices not in (None, n_vertices):
         raise PyramidError(
@@ -169,10 +203,12 @@ def pyramid_from_parts(
     return _geo_pyramid(contents, pyramid, origin, frame)
 
 
-def input_from_parts(contents: Contents, arrays: StoredArrays) -> GeoPyramid:
+def input_from_parts(
+    contents: Contents, arrays: StoredArrays, progress: Progress | None = None
+) -> GeoPyramid:
     """Return what the input comes back from, without the levels where the file allows it."""
     if "record" not in contents.metadata:
-        return pyramid_from_parts(contents, arrays)
+        return pyramid_from_parts(contents, arrays, progress=progress)
     fields = contents.metadata.fields("source")
     check_source(fields)
     origin = origin_from_parts(fields, source_arrays(fields, arrays))
@@ -194,12 +230,14 @@ def input_from_parts(contents: Contents, arrays: StoredArrays) -> GeoPyramid:
     return _geo_pyramid(contents, pyramid, origin, frame)
 
 
-def levels_from_parts(contents: Contents, arrays: StoredArrays, level: int) -> GeoPyramid:
+def levels_from_parts(
+    contents: Contents, arrays: StoredArrays, level: int, progress: Progress | None = None
+) -> GeoPyramid:
     """Return all levels up to one, or more, from as few of the arrays as may be."""
     index = _part_with(contents, level)
     if index == 0:
-        return pyramid_from_parts(contents, arrays)
-    return _part_from_parts(contents, arrays, index)
+        return pyramid_from_parts(contents, arrays, progress=progress)
+    return _part_from_parts(contents, arrays, index, progress)
 
 
 def _part_with(contents: Contents, level: int) -> int:
@@ -217,7 +255,9 @@ def _part_with(contents: Contents, level: int) -> int:
     return found
 
 
-def _part_from_parts(contents: Contents, arrays: StoredArrays, index: int) -> GeoPyramid:
+def _part_from_parts(
+    contents: Contents, arrays: StoredArrays, index: int, progress: Progress | None
+) -> GeoPyramid:
     """Return the levels of a pyramid from one of its parts down.
 
     A raster's numbers are not needed, a cloud's are, for the places of the vertices.
@@ -239,7 +279,12 @@ def _part_from_parts(contents: Contents, arrays: StoredArrays, index: int) -> Ge
         raise PyramidError("a locked mask of another length; the file is damaged.")
     with np.errstate(all="ignore"):
         pyramid = part_of_record(
-            record, index, plan, locked=None if locked is None else locked[ids], **design
+            record,
+            index,
+            plan,
+            locked=None if locked is None else locked[ids],
+            progress=progress,
+            **design,
         )
     return _geo_pyramid(contents, pyramid, origin, frame)
 
@@ -355,7 +400,11 @@ def _parameters_from(described: Fields) -> dict[str, Any]:
 
 
 def _from_lists(
-    contents: Contents, arrays: StoredArrays, origin: Origin, frame: LocalFrame
+    contents: Contents,
+    arrays: StoredArrays,
+    origin: Origin,
+    frame: LocalFrame,
+    progress: Progress | None,
 ) -> Pyramid:
     """Return a pyramid from the arrays of its steps."""
     described = contents.metadata.fields("pyramid")
@@ -372,17 +421,9 @@ def _from_lists(
         horizontal = arrays.get("horizontal", "<f8", 2)
     if described.get("steps") == _PLACES and horizontal is not None:
         tolerance = described.fields("parameters").number("outline_tolerance")
-        steps = _placed_steps(arrays, n_levels, horizontal, faces, locked, tolerance)
+        steps = _placed_steps(arrays, n_levels, horizontal, faces, locked, tolerance, progress)
     else:
-        steps = [
-            Step(
-                **{
-                    name: arrays.get(_name_of(level, name), *kind)
-                    for name, kind in _STEP_ARRAYS.items()
-                }
-            )
-            for level in range(n_levels)
-        ]
+        steps = _listed_steps(arrays, n_levels, len(faces), progress)
     pyramid = Pyramid.from_parts(
         faces=faces,
         horizontal=horizontal,
@@ -406,6 +447,22 @@ def _from_lists(
     return pyramid
 
 
+def _listed_steps(
+    arrays: StoredArrays, n_levels: int, n_faces: int, progress: Progress | None
+) -> list[Step]:
+    """Return the steps of which every array is stored."""
+    steps = []
+    n_read = 0
+    for level in range(n_levels):
+        stored = {}
+        for name, kind in _STEP_ARRAYS.items():
+            stored[name] = arrays.get(_name_of(level, name), *kind)
+            report(progress, min(2 * n_read / max(n_faces, 1), 1.0))  # a vertex has two faces
+        steps.append(Step(**stored))
+        n_read += len(stored["odd"])
+    return steps
+
+
 def _placed_steps(
     arrays: StoredArrays,
     n_levels: int,
@@ -413,6 +470,7 @@ def _placed_steps(
     faces: NDArray[np.int32],
     locked: NDArray[np.bool_] | None,
     tolerance: float,
+    progress: Progress | None,
 ) -> list[Step]:
     """Return the steps of which odd vertices, places of targets and details are stored."""
     is_sound = (
@@ -435,8 +493,13 @@ def _placed_steps(
         for level in range(n_levels)
     ]
     mask = _mask(locked, len(horizontal))
+    collapses = []
+    n_taken = 0
     with np.errstate(all="ignore"):
-        collapses = list(steps_at_places(horizontal, faces, mask, tolerance, moves[::-1]))
+        for collapse in steps_at_places(horizontal, faces, mask, tolerance, moves[::-1]):
+            collapses.append(collapse)
+            n_taken += len(collapse.odd)
+            report(progress, min(n_taken / len(horizontal), 1.0))
     return [
         Step(*collapse._replace(details=arrays.get(_name_of(level, "details"), "<f8", 2)))
         for level, collapse in enumerate(reversed(collapses))
@@ -449,6 +512,7 @@ def _recorded(
     origin: Origin,
     frame: LocalFrame,
     written: Pyramid | None,
+    progress: Progress | None,
 ) -> Pyramid:
     """Return a pyramid from its record and the input."""
     described = contents.metadata.fields("pyramid")
@@ -458,7 +522,8 @@ def _recorded(
         arrays.all_named("faces")  # verified
     elif origin.points is not None:
         fields, places = contents.metadata.fields("record"), origin.points.kept_places
-        faces = faces_from_parts(fields, arrays, places)
+        of_faces = part_of(progress, 0.0, _SHARE_OF_FACES)
+        faces = faces_from_parts(fields, arrays, places, of_faces)
     mesh = origin.kept_mesh(frame, faces)
     if mesh is None:
         raise PyramidError(_NO_INPUT)
@@ -477,7 +542,14 @@ def _recorded(
     if origin.grid is None:
         _require_surface(mesh)
     with np.errstate(all="ignore"):
-        return pyramid_of(record, mesh, locked=locked, stop=_stop_from(described), **design)
+        return pyramid_of(
+            record,
+            mesh,
+            locked=locked,
+            stop=_stop_from(described),
+            progress=part_of(progress, 0.0 if faces is None else _SHARE_OF_FACES, 1.0),
+            **design,
+        )
 
 
 def _require_surface(mesh: TriangleMesh) -> None:

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core import Progress
 from wavelet_core.errors import PyramidError
 from wavelet_core.lifting.recorded import Frame, Record, RecordPart
 from wavelet_core.mesh.connectivity import build_connectivity
@@ -97,7 +98,9 @@ def record_to_parts(record: Record) -> tuple[dict[str, Any], dict[str, NDArray[A
 
 
 def faces_to_parts(
-    places: NDArray[np.int64] | None, faces: NDArray[np.integer]
+    places: NDArray[np.int64] | None,
+    faces: NDArray[np.integer],
+    progress: Progress | None = None,
 ) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     """Return fields and arrays that hold the faces of points; see `face_codec`.
 
@@ -106,8 +109,10 @@ def faces_to_parts(
     places : (n, 2) int64, or None
         Of the points, as stored.
     faces : (m, 3) integers
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
-    record = None if places is None else encode_faces(places, faces)
+    record = None if places is None else encode_faces(places, faces, progress)
     if record is None:
         return {}, {"faces": faces}
     arrays: dict[str, NDArray[Any]] = {
@@ -119,9 +124,22 @@ def faces_to_parts(
 
 
 def faces_from_parts(
-    fields: Fields, arrays: ArraySource, places: NDArray[np.int64] | None
+    fields: Fields,
+    arrays: ArraySource,
+    places: NDArray[np.int64] | None,
+    progress: Progress | None = None,
 ) -> NDArray[Any]:
     """Return the faces that `faces_to_parts` stored, ``(m, 3)``.
+
+    Parameters
+    ----------
+    fields : Fields
+        Of unknown origin.
+    arrays : ArraySource
+    places : (n, 2) int64, or None
+        Of the points, as stored.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -145,7 +163,8 @@ def faces_from_parts(
         raise fields.fault("faces that do not fit the points")
     bits = np.unpackbits(packed, count=sum(counts))
     answers = tuple(np.split(bits, np.cumsum(counts)[:-1]))
-    return decode_faces(places, FaceRecord(answers, far, arrays.get("faces/holes", "<i8", 1)))
+    record = FaceRecord(answers, far, arrays.get("faces/holes", "<i8", 1))
+    return decode_faces(places, record, progress)
 
 
 def n_parts(fields: Fields) -> int:

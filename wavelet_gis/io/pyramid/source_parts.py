@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from wavelet_core import Progress
+from wavelet_core.progress import part_of, report
 from wavelet_gis._fields import Fields
 from wavelet_gis.io.pyramid.array_tables import StoredArrays
 from wavelet_gis.io.pyramid.grid_codec import (
@@ -35,12 +37,18 @@ _BEYOND = "source/beyond"
 _PALETTE = "source/palette"
 
 
-def shrink_source(geo: GeoPyramid, source: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
+def shrink_source(
+    geo: GeoPyramid,
+    source: dict[str, Any],
+    arrays: dict[str, NDArray[Any]],
+    progress: Progress | None = None,
+) -> None:
     """Put in the place of a raster's numbers their residuals."""
     grid = geo.origin.grid
     if grid is not None and _GRID_VALUES in arrays:
         numbers = integers_of(arrays.pop(_GRID_VALUES))
-        residuals = encode_grid(numbers.integers, grid.valid)
+        report(progress, 0.1)
+        residuals = encode_grid(numbers.integers, grid.valid, part_of(progress, 0.1, 1.0))
         arrays[_RESIDUALS], arrays[_BEYOND] = residuals.numbers, residuals.beyond
         source["divisor"] = numbers.divisor
         source["relief_classes"] = list(residuals.classes)

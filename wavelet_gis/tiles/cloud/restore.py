@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from wavelet_gis._fields import Fields
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.atomic import new_file
+from wavelet_gis.io.las.cloud_reader import laspy_header, masks_aside, require_laspy
 from wavelet_gis.io.las.cloud_writer import record_array, write_records
 from wavelet_gis.io.las.layout import parse_layout
 from wavelet_gis.model.points.cloud import PointCloud
@@ -25,7 +26,7 @@ from wavelet_gis.tiles.piece import LOOSE, PIECES, sha256_of
 from wavelet_gis.tiles.plan import Piece
 from wavelet_gis.workflows.reconstruct import reconstruct
 
-__all__ = ["n_chosen", "names_of_sources", "restore_source"]
+__all__ = ["loose_points", "n_chosen", "names_of_sources", "restore_source"]
 
 
 def names_of_sources(index: TileIndex) -> list[str]:
@@ -139,6 +140,42 @@ def restore_source(
     return n_points
 
 
+def loose_points(index: TileIndex, piece: Piece) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return the points of a tile that have no surface, and their cells in the grid of all.
+
+    Parameters
+    ----------
+    index : TileIndex
+    piece : Piece
+        A tile whose record says ``loose``.
+
+    Returns
+    -------
+    places : (n, 3) float64
+        In the working frame, with z of 0; without what is left aside, such as noise.
+    cells : (n,) int64
+    """
+    plan = index.plan
+    lattice, reading, frame = plan.points, plan.reading, plan.local_frame
+    assert lattice is not None
+    number = plan.inputs_of(piece)[0]
+    head = index.folder / SOURCES / f"{number:05d}.head"
+    layout = parse_layout(str(head), head.read_bytes())
+    points = _loose(index, piece, record_dtype(index.folder, number))
+    records = require_laspy().PackedPointRecord(
+        points.records, laspy_header(str(head), layout).point_format
+    )
+    withheld, noise = masks_aside(
+        records, reading["classes"], reading["keep_noise"], reading["keep_withheld"]
+    )
+    used = points.records[~(withheld | noise)]
+    rows = used["Y"].astype(np.int64) - lattice.first[0]
+    columns = used["X"].astype(np.int64) - lattice.first[1]
+    x, y = plan.places(rows, columns)
+    places = np.column_stack([frame.local_x(x), frame.local_y(y), np.zeros(len(used))])
+    return places, rows * plan.shape[1] + columns
+
+
 def _source_of(index: TileIndex, number: int) -> Fields:
     """Return the record of the cut of an input."""
     name = index.plan.files[number].path
@@ -178,16 +215,21 @@ def _parts(index: TileIndex, number: int, dtype: np.dtype[Any]) -> Iterator[CutP
         if status == "empty":
             continue
         if status == "loose":
-            path = index.folder / PIECES / f"{piece.name}{LOOSE}"
-            if not path.is_file() or sha256_of(path) != record["sha256"]:
-                raise _missing(index, piece, "not the file that was made")
-            yield CutPoints.from_bytes(path.read_bytes(), dtype)
+            yield _loose(index, piece, dtype)
             continue
         if status != "whole":
             raise _missing(index, piece, status)
         cloud = reconstruct(read_input(index.path(piece))).original
         assert isinstance(cloud, PointCloud)
         yield CutPoints(record_array(cloud), cloud.carried[FILE], cloud.carried[ROW])
+
+
+def _loose(index: TileIndex, piece: Piece, dtype: np.dtype[Any]) -> CutPoints:
+    """Return the points of a tile that have no surface, as they came."""
+    path = index.folder / PIECES / f"{piece.name}{LOOSE}"
+    if not path.is_file() or sha256_of(path) != index.records[piece]["sha256"]:
+        raise _missing(index, piece, "not the file that was made")
+    return CutPoints.from_bytes(path.read_bytes(), dtype)
 
 
 def _missing(index: TileIndex, piece: Piece, what: str) -> InputFileError:

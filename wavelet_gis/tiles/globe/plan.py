@@ -15,7 +15,8 @@ from wavelet_gis.tiles.globe.tile_mesh import EARTH_RADIUS
 
 __all__ = ["ERROR_OF_SPACING", "TilesetPlan", "plan_tiles"]
 
-#: Part of the spacing of the points that the finest zoom may be off, where nothing else is asked.
+#: Part of the spacing of the points that the finest zoom may be off, where nothing else is asked;
+#: more where the steps of height are too large for so little.
 ERROR_OF_SPACING = 0.1
 
 #: Of a zoom's error, what chords of level ground may be below the round earth; a limit on the error
@@ -98,8 +99,9 @@ def plan_tiles(
     low, high = min(float(globe.height.min()), fill), max(float(globe.height.max()), fill)
     exponent = math.ceil(math.log2(max((high - low) / (STEPS - 1), _SMALLEST_STEP)))
     step = 2.0**exponent
-    error = ERROR_OF_SPACING * spacing if max_error is None else max_error
-    if not error >= _STEPS_OF_ERROR * step:
+    least = _STEPS_OF_ERROR * step
+    error = max(ERROR_OF_SPACING * spacing, least) if max_error is None else max_error
+    if not error >= least:
         raise OptionError(
             "{0} is {error:.4g} m, and heights from {low:.5g} to {high:.5g} m are stored in steps "
             "of {step:.4g} m; give at least {least:.4g}.",
@@ -108,7 +110,7 @@ def plan_tiles(
             low=low,
             high=high,
             step=step,
-            least=_STEPS_OF_ERROR * step,
+            least=least,
         )
     return TilesetPlan(zoom, error, step, round(fill / step))
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from wavelet_core import TriangleMesh
 from wavelet_core.mesh.location import cover_of, surface_errors
@@ -21,6 +22,8 @@ from wavelet_gis.tiles.globe.tile_grid import STEPS, Tile, steps_of_degrees
 __all__ = ["GlobePoints", "SourceSurface", "source_surface"]
 
 FloatArray = NDArray[np.float64]
+
+_AROUND = np.column_stack([f(np.arange(6) * (np.pi / 3)) for f in (np.cos, np.sin)])
 
 #: Spacings outside the outline at which the ground has come to the height of filling: so many that
 #: rounding to the steps of coarse zooms is little against the slope.
@@ -33,12 +36,42 @@ class GlobePoints(NamedTuple):
     longitude, latitude : (n,) float64, degrees on WGS 84
     height : (n,) float64, metres
     faces : (m, 3) int
+    others : (k, 3) float64, longitude, latitude and height of points that were merged with a vertex
     """
 
     longitude: FloatArray
     latitude: FloatArray
     height: FloatArray
     faces: NDArray[np.int64]
+    others: FloatArray = np.empty((0, 3))
+
+
+class _Sorted(NamedTuple):
+    """Points by tile.
+
+    points : (n, 3) float64, x and y in steps of a zoom, sorted by the tile they are in
+    tile : (n,) int64, as ``row * columns + column``
+    """
+
+    points: FloatArray
+    tile: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, points: FloatArray, zoom: int) -> _Sorted:
+        """Return points sorted by their tiles of a zoom."""
+        columns = 2 << zoom
+        at = np.clip(np.floor(points[:, :2] / STEPS), 0, [columns - 1, columns // 2 - 1])
+        tile = (at[:, 1] * columns + at[:, 0]).astype(np.int64)
+        order = np.argsort(tile, kind="stable")
+        return cls(points[order], tile[order])
+
+    def within(self, tile: Tile, zoom: int) -> FloatArray:
+        """Return the points in a tile of their zoom or a coarser one."""
+        k = zoom - tile.zoom
+        rows = np.arange(tile.y << k, (tile.y + 1) << k, dtype=np.int64) * (2 << zoom)
+        first = np.searchsorted(self.tile, rows + (tile.x << k))
+        last = np.searchsorted(self.tile, rows + ((tile.x + 1) << k))
+        return np.concatenate([self.points[a:b] for a, b in zip(first, last, strict=True)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,22 +82,20 @@ class SourceSurface:
     ----------
     zoom : int
         The finest.
-    points : (n, 3) float64
-        x and y in steps and z in metres of the vertices, sorted by the tile they are in.
+    points, others : sorted points
+        The vertices, and the points that were merged with one; z in metres.
     ring : (k, 3) float64
         Places around the outline, at the height of the outline or of filling.
-    tile_of_point : (n,) int64
-        As ``row * columns + column``.
     whole : TriangleMesh
-        The TIN, and triangles around it and over its holes.
+        The TIN, and triangles around it and over its holes, which meet vertices without faces.
     fill : float
         Height of the ground outside, metres.
     """
 
     zoom: int
-    points: FloatArray
+    points: _Sorted
+    others: _Sorted
     ring: FloatArray
-    tile_of_point: NDArray[np.int64]
     whole: TriangleMesh
     fill: float
 
@@ -75,13 +106,12 @@ class SourceSurface:
         return np.where(np.isnan(heights), self.fill, heights)
 
     def points_in(self, tile: Tile) -> FloatArray:
-        """Return the points of a tile of any zoom."""
-        k = self.zoom - tile.zoom
-        columns = 2 << self.zoom
-        rows = np.arange(tile.y << k, (tile.y + 1) << k, dtype=np.int64) * columns
-        first = np.searchsorted(self.tile_of_point, rows + (tile.x << k))
-        last = np.searchsorted(self.tile_of_point, rows + ((tile.x + 1) << k))
-        return np.concatenate([self.points[a:b] for a, b in zip(first, last, strict=True)])
+        """Return the vertices of a tile of any zoom."""
+        return self.points.within(tile, self.zoom)
+
+    def others_in(self, tile: Tile) -> FloatArray:
+        """Return the points of a tile of any zoom that were merged with a vertex."""
+        return self.others.within(tile, self.zoom)
 
     def ring_in(self, tile: Tile) -> FloatArray:
         """Return the places around the outline in a tile of the finest zoom."""
@@ -90,7 +120,7 @@ class SourceSurface:
 
     def extent(self) -> FloatArray:
         """Return the smallest and the largest x and y of points and ring, ``(2, 2)``."""
-        both = np.concatenate([self.points, self.ring])[:, :2]
+        both = np.concatenate([self.points.points, self.ring])[:, :2]
         return np.stack([both.min(axis=0), both.max(axis=0)])
 
 
@@ -106,18 +136,18 @@ def source_surface(globe: GlobePoints, zoom: int, fill: float) -> SourceSurface:
         Height of the ground outside, metres.
     """
     x, y = steps_of_degrees(globe.longitude, globe.latitude, zoom)
+    vertices = np.column_stack([x, y, globe.height])
     used = np.unique(globe.faces)
     place = np.full(len(x), -1, dtype=np.int64)
     place[used] = np.arange(len(used))
-    vertices = np.column_stack([x, y, globe.height])[used]
-    tin = TriangleMesh.from_triangles(vertices, place[globe.faces])
-    ring = _ring(tin, fill)
-    whole = _with_surroundings(tin, ring, fill)
-    columns = 2 << zoom
-    at = np.clip(np.floor(vertices[:, :2] / STEPS), 0, [columns - 1, columns // 2 - 1])
-    tile = (at[:, 1] * columns + at[:, 0]).astype(np.int64)
-    order = np.argsort(tile, kind="stable")
-    return SourceSurface(zoom, vertices[order], ring, tile[order], whole, fill)
+    tin = TriangleMesh.from_triangles(vertices[used], place[globe.faces])
+    lone = np.delete(vertices, used, axis=0)
+    ring = _ring(tin, lone, fill)
+    whole = _with_surroundings(tin, ring, lone, fill)
+    x, y = steps_of_degrees(globe.others[:, 0], globe.others[:, 1], zoom)
+    others = np.column_stack([x, y, globe.others[:, 2]])
+    by_tile, merged = _Sorted.of(vertices, zoom), _Sorted.of(others, zoom)
+    return SourceSurface(zoom, by_tile, merged, ring, whole, fill)
 
 
 def _outline(faces: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:
@@ -128,8 +158,11 @@ def _outline(faces: NDArray[np.int64], n_vertices: int) -> NDArray[np.int64]:
     return np.column_stack([tail[alone], head[alone]])
 
 
-def _ring(tin: TriangleMesh, fill: float) -> FloatArray:
-    """Return places around the outer outlines: beside them, and where the filling begins."""
+def _ring(tin: TriangleMesh, lone: FloatArray, fill: float) -> FloatArray:
+    """Return places around the outer outlines: beside them, and where the filling begins.
+
+    A vertex without faces has six of each around it.
+    """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -155,19 +188,24 @@ def _ring(tin: TriangleMesh, fill: float) -> FloatArray:
     size = np.linalg.norm(normal[rim], axis=1, keepdims=True)
     rim, normal = rim[size[:, 0] > 1e-6], (normal[rim] / np.maximum(size, 1e-6))[size[:, 0] > 1e-6]
     spacing = np.sqrt(tin.plan_areas.sum() / tin.n_vertices)
-    near, far = (np.rint(plan[rim] + k * spacing * normal) for k in (1, FALL))
+    middle = np.concatenate([tin.vertices[rim], np.repeat(lone, len(_AROUND), axis=0)])
+    away = np.concatenate([normal, np.tile(_AROUND, (len(lone), 1))])
+    near, far = (np.rint(middle[:, :2] + k * spacing * away) for k in (1, FALL))
     ring = np.concatenate(
-        [
-            np.column_stack([near, tin.vertices[rim, 2]]),
-            np.column_stack([far, np.full(len(far), fill)]),
-        ]
+        [np.column_stack([near, middle[:, 2]]), np.column_stack([far, np.full(len(far), fill)])]
     )
     _, first = np.unique(ring[:, :2], axis=0, return_index=True)
     ring = ring[np.sort(first)]
+    if len(lone):  # which are as high as they are, whatever is around others
+        ring = ring[cKDTree(lone[:, :2]).query(ring[:, :2])[0] >= 0.5 * spacing]
     return np.delete(ring, cover_of(tin, ring[:, :2]).point, axis=0)
 
 
-def _with_surroundings(tin: TriangleMesh, ring: FloatArray, fill: float) -> TriangleMesh:
+def _with_surroundings(
+    tin: TriangleMesh, ring: FloatArray, lone: FloatArray, fill: float
+) -> TriangleMesh:
+    lone = np.delete(lone, cover_of(tin, lone[:, :2]).point, axis=0)
+    ring = np.concatenate([ring, lone])
     edges = _outline(tin.faces, tin.n_vertices)
     rim = np.unique(edges)
     low, high = ring[:, :2].min(axis=0) - 4 * STEPS, ring[:, :2].max(axis=0) + 4 * STEPS

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh, analyse
-from wavelet_core.mesh.location import cover_of, surface_errors
+from wavelet_core.mesh.location import cover_of, errors_with_border
 from wavelet_core.mesh.triangulation import delaunay_faces
 from wavelet_gis.tiles.globe.edges import Border
 from wavelet_gis.tiles.globe.tile_grid import STEPS, Tile, tile_width
@@ -37,6 +37,10 @@ EARTH_RADIUS = 6378137.0
 #: Points so near the border of a tile, in steps, are not made vertices: they would be slivers. With
 #: 1 and with 4 the bytes of two DEMs are the same to 0.05 %.
 _NEAR_BORDER = 2
+
+#: Steps by which a point may be beside its tile by rounding: positions in steps of zoom 22 are
+#: exact to a ten-thousandth.
+_BESIDE = 1e-3
 
 #: Rounds in which folded faces are looked after, at most. On two DEMs 16 give the same tiles.
 _ROUNDS = 8
@@ -281,13 +285,16 @@ def _without_folded_pairs(faces: NDArray[np.int64]) -> NDArray[np.int64]:
 def errors_on(
     drawn: OnTile, tile: Tile, zoom: int, height_step: float, points: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the heights of points above a tile as it is written, metres; NaN beside it."""
+    """Return the heights of points above a tile as it is written, metres; NaN where it has a hole.
+
+    Beside it by rounding they are measured at its border.
+    """
     scale = 1 << (zoom - tile.zoom)
     vertices = np.column_stack([drawn.u, drawn.v, drawn.height * height_step])
     places = points.copy()
     places[:, 0] = points[:, 0] / scale - tile.x * STEPS
     places[:, 1] = points[:, 1] / scale - tile.y * STEPS
-    return surface_errors(TriangleMesh.from_triangles(vertices, drawn.faces), places)
+    return errors_with_border(TriangleMesh.from_triangles(vertices, drawn.faces), places, _BESIDE)
 
 
 def without_slivers(

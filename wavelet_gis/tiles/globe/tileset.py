@@ -15,7 +15,7 @@ from wavelet_core import OptionError, Progress
 from wavelet_core.progress import report
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.crs.projection import projected
-from wavelet_gis.errors import CrsError, TerrainWarning
+from wavelet_gis.errors import CrsError, InputFileError, TerrainWarning
 from wavelet_gis.io.atomic import new_folder
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.terrain import Terrain
@@ -36,7 +36,7 @@ from wavelet_gis.tiles.globe.tile_mesh import (
     simplified,
     with_points,
 )
-from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
+from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, warn_of_error_above
 
 __all__ = ["LAYER", "Tileset", "ZoomFigures", "globe_points", "terrain_tiles"]
 
@@ -65,6 +65,7 @@ class ZoomFigures(NamedTuple):
     zoom : int
     n_tiles, n_vertices, n_bytes : int
     promised, max_error : float, metres, at all points of the input
+    n_uncovered : int, points of the input that no triangle covers, which have no error
     """
 
     zoom: int
@@ -73,6 +74,26 @@ class ZoomFigures(NamedTuple):
     n_bytes: int
     promised: float
     max_error: float
+    n_uncovered: int
+
+
+class _Off(NamedTuple):
+    """How far tiles are off: at vertices of the input, at all its points, and points beside them.
+
+    Of points that share x and y one is a vertex.
+    """
+
+    at_vertices: float = 0.0
+    at_all: float = 0.0
+    n_uncovered: int = 0
+
+    def with_those(self, other: _Off) -> _Off:
+        """Return what holds for the points of both."""
+        return _Off(
+            max(self.at_vertices, other.at_vertices),
+            max(self.at_all, other.at_all),
+            self.n_uncovered + other.n_uncovered,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,32 +194,54 @@ def globe_points(data: Terrain | GeoPyramid, level: int | None = None) -> GlobeP
 
     Raises
     ------
+    InputFileError
+        Without a triangle.
     CrsError
         Without a CRS that gives the place on earth, or where that is on both sides of 180 degrees.
     """
     if isinstance(data, Terrain):
-        mesh, name = data.mesh, data.name
+        mesh, name, points = data.mesh, data.name, data.points_for_errors()
     else:
         mesh, name = data.pyramid.synthesise(level), data.source_name
+        points = mesh.vertices
+        if data.origin.points is not None and level in (None, data.pyramid.n_levels):
+            points = data.origin.points.points_for_errors(mesh, data.frame)
+    if not mesh.n_faces:
+        raise InputFileError(f"{name}: there is no triangle, so there is no surface to tile.")
     if data.system.wkt is None or data.system.kind == "unknown":
         raise CrsError(
             "{name}: nothing says where on earth this is; give its CRS with {0}.",
             "crs",
             name=name,
         )
-    places = data.frame.to_file(mesh.vertices)
-    longitude, latitude = projected(
-        data.system, coordinate_system("EPSG:4326"), places[:, 0], places[:, 1]
-    )
-    if np.ptp(longitude) > 180.0 or np.abs(longitude).max(initial=0.0) > 180.0:
+    n, height = mesh.n_vertices, mesh.vertices[:, 2]
+    is_other = np.ones(len(points), dtype=bool)
+    is_other[:n] = points[:n, 2] != height  # a vertex at their mean
+    x, y, z = _on_earth(data, mesh.vertices)
+    if np.ptp(x) > 180.0 or np.abs(x).max(initial=0.0) > 180.0:
         raise CrsError(
             "{name}: the terrain lies on both sides of longitude 180; cut it there, and make tiles "
             "of each part.",
             name=name,
         )
+    others = np.column_stack(_on_earth(data, points[is_other]))
+    return GlobePoints(x, y, z, mesh.faces, others)
+
+
+def _on_earth(
+    data: Terrain | GeoPyramid, points: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return longitudes, latitudes and heights in metres of points in the working frame."""
+    places = data.frame.to_file(points)
+    longitude, latitude = projected(
+        data.system, coordinate_system("EPSG:4326"), places[:, 0], places[:, 1]
+    )
     is_geographic = data.system.kind == "geographic"
-    metres = mesh.vertices[:, 2] * (1.0 if is_geographic else data.system.horizontal_unit)
-    return GlobePoints(longitude, latitude, metres, mesh.faces)
+    return (
+        longitude,
+        latitude,
+        points[:, 2] * (1.0 if is_geographic else data.system.horizontal_unit),
+    )
 
 
 class _Writer:
@@ -231,15 +274,16 @@ class _Writer:
         n_tiles = sum(len(tiles) for tiles in ranges)
         n_done = 0
         figures: list[ZoomFigures] = []
+        offs: list[_Off] = []
         meshes: dict[Tile, TileMesh] = {}
         for tiles in ranges[::-1]:
             made: dict[Tile, TileMesh] = {}
             drawn: dict[Tile, OnTile] = {}
-            worst = 0.0
+            worst = _Off()
             for tile in tiles.tiles():
                 children = [meshes.pop(child) for child in tile.children() if child in meshes]
-                made[tile], drawn[tile], error = _best(source, edges, plan, tile, children)
-                worst = max(worst, error)
+                made[tile], drawn[tile], off = _best(source, edges, plan, tile, children)
+                worst = worst.with_those(off)
                 n_done += 1
                 report(self._progress, 0.05 + 0.95 * n_done / n_tiles)
             meshes = made
@@ -247,10 +291,17 @@ class _Writer:
             n_bytes = self._write(drawn)
             figures.append(
                 ZoomFigures(
-                    tiles.zoom, len(drawn), n_vertices, n_bytes, plan.error_at(tiles.zoom), worst
+                    tiles.zoom,
+                    len(drawn),
+                    n_vertices,
+                    n_bytes,
+                    plan.error_at(tiles.zoom),
+                    worst.at_all,
+                    worst.n_uncovered,
                 )
             )
-        self._warn_of_errors(figures, name)
+            offs.append(worst)
+        self._warn_of_errors(figures, offs, name)
         longitude, latitude = self._globe.longitude, self._globe.latitude
         west, south, east, north = (
             float(value)
@@ -261,9 +312,27 @@ class _Writer:
         (self._folder / LAYER).write_text(json.dumps(layer, indent=1) + "\n", "utf-8")
         return Tileset(bounds, tuple(figures[::-1]), plan.height_step)
 
-    def _warn_of_errors(self, figures: list[ZoomFigures], name: str) -> None:
+    def _warn_of_errors(self, figures: list[ZoomFigures], offs: list[_Off], name: str) -> None:
         """Warn where a zoom has not kept its error, as on points like a field of spikes."""
-        above = [zoom for zoom in figures if zoom.max_error > zoom.promised]
+        if n_uncovered := max(zoom.n_uncovered for zoom in figures):
+            warn(
+                TerrainWarning,
+                "zoom_with_holes",
+                "{name}: at some zooms {count} points are over no triangle; their tiles have holes "
+                "where their triangles are too thin for the format (a larger {0} helps)",
+                "max_error",
+                stacklevel=4,
+                name=name,
+                count=n_uncovered,
+            )
+        above = [
+            zoom._replace(max_error=off.at_vertices)
+            for zoom, off in zip(figures, offs, strict=True)
+            if off.at_vertices > zoom.promised
+        ]
+        if not above:
+            finest = self._plan.max_error
+            warn_of_error_above(name, figures[0].max_error, None, max_error=finest)
         if above:
             worst = max(above, key=lambda zoom: zoom.max_error / zoom.promised)
             warn(
@@ -309,7 +378,7 @@ class _Writer:
 
 def _best(
     source: SourceSurface, edges: TileEdges, plan: TilesetPlan, tile: Tile, children: list[TileMesh]
-) -> tuple[TileMesh, OnTile, float]:
+) -> tuple[TileMesh, OnTile, _Off]:
     """Return what a tile hands on, what is drawn of it, and how far that is off at all points."""
     border = edges.border(tile)
     points = source.points_in(tile)
@@ -322,25 +391,36 @@ def _best(
             border, np.concatenate([points, around]), plan.height_step, n_parts, plan.fill
         )
     if not len(points):
-        return mesh, on_tile(mesh, tile, plan.zoom), 0.0  # level, and cut as the earth is round
+        return mesh, on_tile(mesh, tile, plan.zoom), _Off()  # level, and cut as the earth is round
     promised = plan.error_at(tile.zoom)
     kept: NDArray[np.bool_] = np.zeros(len(mesh.x), dtype=bool)
-    best: tuple[float, OnTile] | None = None
+    best: tuple[tuple[int, float], OnTile] | None = None
     for share in _SHARES:
         smaller = simplified(mesh, border, tile, plan.height_step, share * promised, kept)
         drawn = on_tile(smaller, tile, plan.zoom)
-        errors = np.abs(errors_on(drawn, tile, plan.zoom, plan.height_step, points))
-        errors[np.isnan(errors)] = 0.0  # on the border, beside it by rounding
-        worst = float(errors.max())
-        if best is None or worst < best[0]:
-            best = worst, drawn
-        if worst <= promised:
+        off, errors = _off(drawn, tile, plan, points)
+        if best is None or off < best[0]:
+            best = off, drawn
+        if off <= (0, promised):
             break
-        mesh, kept = with_points(mesh, points[errors > promised], plan.height_step, kept)
+        mesh, kept = with_points(mesh, points[~(errors <= promised)], plan.height_step, kept)
     assert best is not None
     stays = np.zeros(len(mesh.x), dtype=bool)
     handed_on = simplified(mesh, border, tile, plan.height_step, _SHARE_HANDED_ON * promised, stays)
-    return handed_on, best[1], best[0]
+    (n_uncovered, worst), drawn = best
+    n_others, of_others = _off(drawn, tile, plan, source.others_in(tile))[0]
+    off_at_all = _Off(worst, max(worst, of_others), n_uncovered + n_others)
+    return handed_on, drawn, off_at_all
+
+
+def _off(
+    drawn: OnTile, tile: Tile, plan: TilesetPlan, points: NDArray[np.float64]
+) -> tuple[tuple[int, float], NDArray[np.float64]]:
+    """Return how many points a tile does not cover, and the largest error; and all of them."""
+    errors = np.abs(errors_on(drawn, tile, plan.zoom, plan.height_step, points))
+    is_covered = ~np.isnan(errors)
+    largest = float(errors.max(initial=0.0, where=is_covered))
+    return (int(np.count_nonzero(~is_covered)), largest), errors
 
 
 def _layer(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 
+from wavelet_core import Progress
 from wavelet_core.errors import PyramidError
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.origin import ORIGINS
@@ -12,7 +13,9 @@ from wavelet_gis.workflows.analyse import Analysis
 __all__ = ["holds_pyramid", "load", "origin_kind"]
 
 
-def load(path: str | os.PathLike[str], *, level: int | None = None) -> Analysis:
+def load(
+    path: str | os.PathLike[str], *, level: int | None = None, progress: Progress | None = None
+) -> Analysis:
     """Return the pyramid in a pyramid file, everything in it checked.
 
     Parameters
@@ -22,6 +25,8 @@ def load(path: str | os.PathLike[str], *, level: int | None = None) -> Analysis:
     level : int, optional
         The finest that is wanted: where the file of a large raster holds it without the levels
         above, no more is read, and the pyramid ends there (`Pyramid.part`).
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -29,10 +34,14 @@ def load(path: str | os.PathLike[str], *, level: int | None = None) -> Analysis:
         When the file is missing, no GeoPackage, or holds no pyramid.
     PyramidError
         When its parts are damaged or do not fit together.
+    Cancelled
+        ``progress`` returned False.
     """
     from wavelet_gis.io.pyramid.pyramid_file import read_levels, read_pyramid
 
-    return Analysis(read_pyramid(path) if level is None else read_levels(path, level))
+    if level is None:
+        return Analysis(read_pyramid(path, progress))
+    return Analysis(read_levels(path, level, progress))
 
 
 def origin_kind(path: str | os.PathLike[str]) -> str:

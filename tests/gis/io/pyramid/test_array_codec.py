@@ -1,7 +1,9 @@
 """Arrays survive their chunks, and no false claim is believed."""
 
+import lzma
 import zlib
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,9 +11,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from wavelet_core.errors import PyramidError
+from wavelet_core.errors import Cancelled, PyramidError
 from wavelet_gis.io.pyramid import array_codec
-from wavelet_gis.io.pyramid.array_codec import ArrayHeader, decode_array, encode_array, header_of
+from wavelet_gis.io.pyramid.array_codec import (
+    ArrayHeader,
+    Tally,
+    decode_array,
+    encode_array,
+    header_of,
+)
 
 ANY_ARRAY = st.sampled_from(["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"]).flatmap(
     lambda code: hnp.arrays(code, hnp.array_shapes(min_dims=1, max_dims=2, min_side=0, max_side=30))
@@ -141,3 +149,36 @@ def test_a_size_that_compression_cannot_reach_gets_no_memory():
     huge = header(1 << 36, chunk_rows=1 << 20)
     with pytest.raises(PyramidError, match="more than compression can hold"):
         decode_array(huge, [chunk_of(8 << 20)], 8200)
+
+
+@pytest.mark.parametrize("n_threads", [0, 2])
+def test_compressing_reports_pieces_of_a_chunk_and_makes_the_same_of_it(n_threads, monkeypatch):
+    """Whole chunks took seconds each, in which QGIS showed nothing and heard no cancel."""
+    monkeypatch.setattr(array_codec, "_PIECE_BYTES", 1 << 16)
+    monkeypatch.setattr(array_codec, "_LOOK", 0.001)
+    array = np.random.default_rng(0).normal(0, 9, 1_000_000).astype(np.int16)
+    header = replace(header_of(array), filter="lzma")
+    seen = []
+    with ThreadPoolExecutor(2) as pool:
+        chunks = list(encode_array(array, pool if n_threads else None, header, seen.append))
+    shuffled = array.view(np.uint8).reshape(-1, 2).T.tobytes()
+    whole = lzma.compress(shuffled, format=lzma.FORMAT_RAW, filters=array_codec.LZMA_FILTERS)
+    assert chunks == [whole]
+    assert sum(seen) == array.nbytes
+    assert len([n for n in seen if n]) > 3 or not n_threads
+
+
+def test_compressing_stops_within_a_chunk(monkeypatch):
+    monkeypatch.setattr(array_codec, "_LOOK", 0.001)
+    array = np.random.default_rng(0).normal(0, 9, 2_000_000).astype(np.int16)
+    header = replace(header_of(array), filter="lzma")
+    packed = []
+    add = Tally.add
+    monkeypatch.setattr(Tally, "add", lambda self, n: (packed.append(n), add(self, n)))
+
+    def stop(n_bytes):
+        raise Cancelled("stop")
+
+    with ThreadPoolExecutor(2) as pool, pytest.raises(Cancelled):
+        list(encode_array(array, pool, header, stop))
+    assert sum(packed) < array.nbytes / 4

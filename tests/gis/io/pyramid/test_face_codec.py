@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
-from wavelet_core.errors import PyramidError
+from wavelet_core.errors import Cancelled, PyramidError
 from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
 from wavelet_gis.io.pyramid.face_codec import decode_faces, encode_faces
 
@@ -121,3 +121,39 @@ def test_a_point_that_is_joined_to_hundreds(name):
     with engine(name):
         record = encode_faces(points, faces)
         assert np.array_equal(decode_faces(points, record), faces)
+
+
+def test_faces_of_many_points_tell_how_far_they_are(monkeypatch):
+    """A QGIS without numba showed nothing for 7 s, and heard no cancel, over 500,000 points."""
+    monkeypatch.setattr("wavelet_core.mesh.point_faces.POINTS_AT_ONCE", 100)
+    monkeypatch.setattr("wavelet_core._arrays.point_faces.POINTS_AT_ONCE", 100)
+    points = scattered(2000)
+    faces = faces_of(points)
+    seen, seen_back = [], []
+    with engine("arrays"):
+        record = encode_faces(points, faces, seen.append)
+        assert np.array_equal(decode_faces(points, record, seen_back.append), faces)
+    for fractions in (seen, seen_back):
+        assert fractions == sorted(fractions)
+        assert np.diff([0.0, *fractions, 1.0]).max() < 0.12
+
+
+@pytest.mark.parametrize("last", [0, 3, 7])
+def test_work_on_faces_stops(last, monkeypatch):
+    monkeypatch.setattr("wavelet_core.mesh.point_faces.POINTS_AT_ONCE", 100)
+    points = scattered()
+    faces = faces_of(points)
+    record = encode_faces(points, faces)
+    for work in (
+        lambda go: encode_faces(points, faces, go),
+        lambda go: decode_faces(points, record, go),
+    ):
+        seen = []
+
+        def go(fraction, seen=seen):
+            seen.append(fraction)
+            return len(seen) <= last
+
+        with engine("arrays"), pytest.raises(Cancelled):
+            work(go)
+        assert len(seen) == last + 1

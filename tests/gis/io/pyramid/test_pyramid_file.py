@@ -16,6 +16,7 @@ from wavelet_core.synthetic import hills
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid.pyramid_file import (
     read_input,
+    read_levels,
     read_pyramid,
     read_summary,
     write_pyramid,
@@ -248,3 +249,34 @@ print(geo.restore().values.shape)
 """
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert result.stdout.strip() == "(40, 50)", result.stderr
+
+
+@pytest.mark.parametrize("name", ["raster", "cloud"])
+def test_reading_reports_every_level(name, request):
+    geo, path = (
+        request.getfixturevalue(f"{name}_record"),
+        request.getfixturevalue(f"{name}_pyramid"),
+    )
+    seen = []
+    assert_same_pyramid(read_pyramid(path, seen.append).pyramid, geo.pyramid)
+    assert len(seen) >= geo.pyramid.n_levels
+    assert seen == sorted(seen)
+    assert 0 <= seen[0] <= seen[-1] <= 1
+
+
+@pytest.mark.parametrize("read", [read_pyramid, lambda path, go: read_levels(path, 0, go)])
+@pytest.mark.parametrize("name", ["raster", "cloud"])
+def test_reading_that_is_cancelled_is_no_damaged_file(name, read, request):
+    with pytest.raises(Cancelled):
+        read(request.getfixturevalue(f"{name}_pyramid"), lambda fraction: fraction < 0.2)
+
+
+@pytest.mark.parametrize("design", [{}, {"prediction": "geometric", "partition": "quadric"}])
+def test_listed_and_placed_levels_are_reported_too(design, tmp_path):
+    mesh = random_delaunay(400, seed=3)
+    geo = record_of(mesh, levels=4, **design)
+    write_pyramid(tmp_path / "p.gpkg", geo)
+    seen = []
+    assert_same_pyramid(read_pyramid(tmp_path / "p.gpkg", seen.append).pyramid, geo.pyramid)
+    assert len(seen) >= 4
+    assert seen == sorted(seen)

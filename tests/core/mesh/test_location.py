@@ -1,0 +1,53 @@
+"""Points on a surface, beside it by rounding, and where it has a hole."""
+
+import numpy as np
+import pytest
+
+from wavelet_core import TriangleMesh, synthetic
+from wavelet_core.mesh.location import errors_with_border, surface_errors
+
+
+@pytest.fixture
+def holed():
+    """Return hills with a hole of four faces, and a vertex by itself in it."""
+    mesh = synthetic.hills(12, 10)
+    middle = 5 * 10 + 4
+    is_hole = (mesh.faces == middle).any(axis=1)
+    assert is_hole.sum() > 3
+    return TriangleMesh(mesh.vertices, mesh.faces[~is_hole]), middle
+
+
+def test_a_point_that_no_face_covers_stays_without_an_error(holed):
+    mesh, middle = holed
+    near = mesh.vertices[[middle, middle]] + [[0.3, 0.1, 7.0], [0.0, 0.0, 7.0]]
+    errors = errors_with_border(mesh, near, 1e-6)
+    assert np.isnan(errors[0])
+    assert errors[1] == 7.0  # at the vertex by itself
+
+
+def test_points_beside_the_border_by_rounding_are_measured_at_its_nearest_place(holed):
+    mesh, middle = holed
+    rng = np.random.default_rng(4)
+    corners = mesh.vertices[:, :2]
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    x = rng.uniform(low[0], high[0], 200)
+    beside = np.column_stack([x, np.full(200, low[1]), np.zeros(200)])
+    on_border = -surface_errors(mesh, beside)
+    assert np.isfinite(on_border).all()
+    beside[:, 1] -= 1e-5
+    assert np.isnan(surface_errors(mesh, beside)).all()
+    np.testing.assert_allclose(-errors_with_border(mesh, beside, 2e-5), on_border, atol=1e-12)
+    assert np.isnan(errors_with_border(mesh, beside, 0.9e-5)).all()
+    corner = np.array([[low[0] - 1e-6, low[1] - 1e-6, 0.0]])
+    first = mesh.vertices[(corners == low).all(axis=1), 2]
+    np.testing.assert_allclose(-errors_with_border(mesh, corner, 1e-5), first, atol=1e-12)
+    lone = mesh.vertices[[middle]] + [[1e-6, -1e-6, 2.0]]
+    np.testing.assert_allclose(errors_with_border(mesh, lone, 1e-5), [2.0])
+
+
+def test_a_mesh_without_faces_is_its_vertices():
+    mesh = TriangleMesh([[0, 0, 1.0], [5, 5, 2.0]], np.empty((0, 3), dtype=int))
+    errors = errors_with_border(
+        mesh, np.array([[0, 0, 3.0], [5, 5 + 1e-9, 3.0], [1, 1, 1.0]]), 1e-6
+    )
+    np.testing.assert_array_equal(errors, [2.0, 1.0, np.nan])
