@@ -24,6 +24,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from wavelet_core import Cancelled, Progress, PyramidError, WaveletError
+from wavelet_core.lifting.recorded import is_error_guided
 from wavelet_core.progress import part_of, report
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.geopackage import (
@@ -72,8 +73,9 @@ __all__ = [
     "write_pyramid",
 ]
 
-#: Part of the time of writing that is spent before the first array is written.
-_SHARE_OF_ENCODING = 0.5
+#: Part of the time of writing that is spent before the first array is written: where the pyramid
+#: follows from its input, and where the arrays of its steps are listed, which are large.
+_SHARE_OF_ENCODING, _SHARE_OF_LISTING = 0.5, 0.1
 
 #: Part of the time of writing that is spent before the file is read back.
 _SHARE_OF_WRITING = 0.8
@@ -109,7 +111,8 @@ def write_pyramid(
     OutputFileError
         When the file cannot be written, or its reader does not take it.
     """
-    metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, _SHARE_OF_ENCODING))
+    share = _SHARE_OF_ENCODING if is_error_guided(geo.pyramid) else _SHARE_OF_LISTING
+    metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, share))
     texts = {name: json.dumps(value, allow_nan=False, sort_keys=True) for name, value in
              metadata.items()}  # fmt: skip
     total = sum(array.nbytes for array in arrays.values())
@@ -121,7 +124,7 @@ def write_pyramid(
             register_attributes_table(connection, table, description)
         write_level_rows(connection, geo)
         work = sum(map(work_of, arrays.values()))
-        of_arrays = part_of(progress, _SHARE_OF_ENCODING, _SHARE_OF_WRITING)
+        of_arrays = part_of(progress, share, _SHARE_OF_WRITING)
         write_arrays(connection, arrays, pool, _share_of(work, of_arrays))
         entries = read_entries(connection, with_checksums=True)
         checksums = checksums_of(texts, read_level_rows(connection), entries)
