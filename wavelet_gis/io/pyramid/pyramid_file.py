@@ -234,12 +234,12 @@ def _share_of(total: int, progress: Progress | None) -> Callable[[int], None]:
     """Return a function that takes numbers of bytes and reports the share of all that are done."""
     done = 0
 
-    def count(n_bytes: int) -> None:
+    def add(n_bytes: int) -> None:
         nonlocal done
         done += n_bytes
         report(progress, min(done / max(total, 1), 1.0), _CANCELLED)
 
-    return count
+    return add
 
 
 def _read_back(
@@ -250,7 +250,15 @@ def _read_back(
     progress: Progress | None,
 ) -> None:
     """Have the reader take a file that was just written, without room for its arrays."""
-    verified = _share_of(total, part_of(progress, _SHARE_OF_WRITING, 1.0))
+    # Arrays are read between levels where these are built again; both count half then.
+    shares = {"bytes": 0.0, "levels": 0.0}
+
+    def count(kind: str, share: float) -> None:
+        shares[kind] = share
+        done = sum(shares.values()) / 2
+        report(progress, _SHARE_OF_WRITING + (1.0 - _SHARE_OF_WRITING) * done, _CANCELLED)
+
+    verified = _share_of(total, lambda share: count("bytes", share))
     try:
         with open_untrusted(path) as connection, _pool() as pool:
             contents = Contents(connection)
@@ -259,7 +267,9 @@ def _read_back(
                 contents,
                 WrittenArrays(connection, pool, contents.entries, size, arrays, verified),
                 geo.pyramid,
+                lambda share: count("levels", share),
             )
+        report(progress, 1.0, _CANCELLED)
     except Cancelled:
         raise
     except WaveletError as error:
