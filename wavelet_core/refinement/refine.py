@@ -48,7 +48,7 @@ class Round(NamedTuple):
     """What the TIN is like after a round.
 
     n_vertices : int
-    rmse, max_error : float, of z, over the input points that the TIN covers
+    rmse, max_error : float, of z, over the input points that the TIN covers, or has by themselves
     n_moved, n_flipped, n_replaced, n_removed : int, vertices and edges that changed in it
     """
 
@@ -220,6 +220,8 @@ class _Work:
         extent = np.ptp(self._measured, axis=0)
         self._weights = height_weights(extent, weights) / scale
         self._n_points = max(len(cover.point), 1)
+        # A vertex by itself stays as it is: an input point without an error.
+        self._n_lone = len(ids) - len(np.unique(mesh.faces))
         face_of = np.full(original.n_vertices, -1, dtype=np.int64)
         face_of[cover.point] = cover.face
         step = np.sqrt(mesh.plan_areas.sum() / self._n_points)
@@ -337,7 +339,7 @@ class _Work:
         self.rounds.append(
             Round(
                 self._state.n_vertices,
-                float(np.sqrt(errors.squared_z.sum() / self._n_points) / scale),
+                float(np.sqrt(errors.squared_z.sum() / (self._n_points + self._n_lone)) / scale),
                 float(np.sqrt(errors.largest.max(initial=0.0)) / scale),
                 *changes,
             )
@@ -372,7 +374,7 @@ class _Work:
         if task.is_free:
             mesh = fitted(mesh, task.original, locked, cover)
             errors = np.abs(surface_errors(mesh, task.original.vertices, cover)[cover.point])
-            rmse = float(np.sqrt(np.mean(errors**2))) if len(errors) else 0.0
+            rmse = float(np.sqrt((errors**2).sum() / max(len(errors) + self._n_lone, 1)))
             largest = float(errors.max(initial=0.0))
             self.rounds.append(Round(mesh.n_vertices, rmse, largest))
         return Refinement(mesh, ids, tuple(self.rounds), cover)

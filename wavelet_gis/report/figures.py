@@ -6,7 +6,7 @@ import platform
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,9 +81,10 @@ def report_data(
         if not 0 <= level <= pyramid.n_levels:
             raise OptionError(f"there is no level {level}; they are 0 to {pyramid.n_levels}.")
     finest = pyramid.synthesise()
+    points = _points_of(geo, finest)
     rows, shown, errors = [], {pyramid.n_levels: finest}, {}
     for level, mesh in enumerate(pyramid):
-        distance = surface_errors(mesh, finest.vertices) / geo.frame.z_scale
+        distance = surface_errors(mesh, points.places) / geo.frame.z_scale
         rows.append(_level_row(geo, level, mesh, finest, distance))
         if level in chosen:
             shown[level], errors[level] = mesh, distance
@@ -94,13 +95,33 @@ def report_data(
         "source": _source_figures(geo, finest),
         "levels": rows[::-1],
         "details": _detail_figures(geo),
-        "shown": [_error_figures(geo, finest, level, errors[level]) for level in chosen],
+        "shown": [_error_figures(geo, finest, points, level, errors[level]) for level in chosen],
         "parameters": dict(pyramid.parameters),
         "history": list(geo.history),
         "notes": [note.to_dict() for note in geo.notes],
         "versions": _versions(),
     }
-    return ReportData(figures, shown, {level: errors[level] for level in chosen})
+    at_vertices = {level: errors[level][: finest.n_vertices] for level in chosen}
+    return ReportData(figures, shown, at_vertices)
+
+
+class _Points(NamedTuple):
+    """All input points of a surface: those of the vertices first, then those merged with one.
+
+    places : (n, 3) float64, in the working frame
+    vertex : (n,) int64, the vertex that each is at
+    """
+
+    places: FloatArray
+    vertex: NDArray[np.int64]
+
+
+def _points_of(geo: GeoPyramid, finest: TriangleMesh) -> _Points:
+    own = np.arange(finest.n_vertices)
+    if geo.origin.points is None:
+        return _Points(finest.vertices, own)
+    places = geo.origin.points.points_for_errors(finest, geo.frame)
+    return _Points(places, np.concatenate([own, geo.origin.points.representative]))
 
 
 def _level_row(
@@ -161,10 +182,10 @@ def _detail_figures(geo: GeoPyramid) -> dict[str, Any]:
 
 
 def _error_figures(
-    geo: GeoPyramid, finest: TriangleMesh, level: int, distance: FloatArray
+    geo: GeoPyramid, finest: TriangleMesh, points: _Points, level: int, distance: FloatArray
 ) -> dict[str, Any]:
     """Where the error of a level is: by slope of the input, and its worst places."""
-    slope = surface_shape(finest).slope
+    slope = surface_shape(finest).slope[points.vertex]
     known = np.isfinite(distance) & np.isfinite(slope)
     total = float((distance[known] ** 2).sum())
     classes = []
@@ -182,8 +203,8 @@ def _error_figures(
             }
         )
     size = np.abs(np.where(known, distance, 0.0))
-    worst = _apart(finest.vertices[:, :2], size)
-    places = geo.frame.to_file(finest.vertices[worst])
+    worst = _apart(points.places[:, :2], size)
+    places = geo.frame.to_file(points.places[worst])
     return {
         "level": level,
         "quantiles": {

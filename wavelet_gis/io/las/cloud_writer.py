@@ -31,8 +31,9 @@ if TYPE_CHECKING:
 
 __all__ = ["record_array", "write_cloud", "write_records"]
 
-#: Points written, and read back, at once.
+#: Points written, and read back, at once; read back, no more than so many bytes of them.
 _BATCH = 1_000_000
+_BATCH_BYTES = 1 << 26
 
 
 def write_cloud(path: str | os.PathLike[str], cloud: PointCloud) -> None:
@@ -235,7 +236,7 @@ def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np
     if not layout.is_compressed:
         with open(path, "rb") as stream:
             stream.seek(layout.points_start)
-            n_bytes = min(_BATCH, len(content)) * content.shape[1]  # records may have 64 kB
+            n_bytes = _read_at_once(*content.shape) * content.shape[1]
             while n_read < len(content) and (batch := stream.read(n_bytes)):
                 take(memoryview(batch[: len(batch) // content.shape[1] * content.shape[1]]))
                 if len(batch) < n_bytes:
@@ -251,13 +252,18 @@ def _verify(path: str | os.PathLike[str], layout: LasLayout, content: NDArray[np
         n_points=len(content),
     )
     try:
-        laz_decoder.decoded_in_batches(job, min(_BATCH, max(len(content), 1)), take)
+        laz_decoder.decoded_in_batches(job, _read_at_once(*content.shape), take)
     except laz_decoder.DecodeError as error:
         raise _not_compressible(path, layout.point_format, error) from error
     if n_other:
         raise _not_compressible(
             path, layout.point_format, f"{n_other} of {len(content)} points come back changed"
         )
+
+
+def _read_at_once(n_points: int, record_length: int) -> int:
+    """Return how many points are read back at once: records may have 64 kB."""
+    return max(min(n_points, _BATCH, _BATCH_BYTES // record_length), 1)
 
 
 def _not_compressible(path: Any, point_format: int, why: object) -> OutputFileError:

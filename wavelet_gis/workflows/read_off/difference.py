@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_gis.crs.frame import VERTICAL_UNITS, Georeference, vertical_unit_name
 from wavelet_gis.errors import CrsError, InputFileError
-from wavelet_gis.model.dem import Dem
+from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.products.lone_vertices import fill_lone_cells
 from wavelet_gis.products.rasterise import rasterise
 from wavelet_gis.products.vertex_raster import grid_of
 from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of
@@ -93,7 +96,7 @@ def difference(
         other = checked_levels(geo, [geo.pyramid.n_levels if less is None else less])[0]
         finest = geo.pyramid.mesh(other)
         geometry = grid_of(geo, finest if other > level else mesh, cell_size)
-        there = rasterise(geo.file_mesh(finest), geometry)
+        there = _on_grid(geo, finest, geometry)
     else:
         if cell_size is not None:
             raise OptionError("{0} is not for a DEM, which has its own; leave it out.", "cell_size")
@@ -101,7 +104,7 @@ def difference(
         geometry = dem.geometry
         there = np.full(geometry.shape, np.nan)
         there[dem.valid] = dem.elevations()
-    values = (rasterise(geo.file_mesh(mesh), geometry) - there).astype(np.float32)
+    values = (_on_grid(geo, mesh, geometry) - there).astype(np.float32)
     valid = np.isfinite(values)
     if not valid.any():
         raise InputFileError(
@@ -109,6 +112,12 @@ def difference(
         )
     profile = {"options": {"compress": "deflate", "predictor": 3, "tiled": True}}
     return Difference(geo, Dem(values, valid, geometry, float("nan"), profile=profile))
+
+
+def _on_grid(geo: GeoPyramid, mesh: TriangleMesh, geometry: GridGeometry) -> NDArray[np.float64]:
+    """Return the heights of a surface at the centres of cells, and of cells by themselves."""
+    in_file = geo.file_mesh(mesh)
+    return fill_lone_cells(rasterise(in_file, geometry), in_file, geometry)
 
 
 def _read(geo: GeoPyramid, path: str | os.PathLike[str]) -> Dem:

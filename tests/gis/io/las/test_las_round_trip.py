@@ -5,7 +5,10 @@ nothing is made anew on the way: odd dates, counts that no rule asks for, paddin
 owners that nobody knows.
 """
 
+import os
 import struct
+import subprocess
+import sys
 from dataclasses import replace
 from itertools import product
 
@@ -16,6 +19,7 @@ import pytest
 from wavelet_core import analyse
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.las import read_cloud, write_cloud
+from wavelet_gis.io.las.cloud_writer import _read_at_once
 from wavelet_gis.io.las.layout import RECORD_LENGTHS, read_layout
 from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, write_pyramid
 from wavelet_gis.workflows.open import open_terrain
@@ -329,3 +333,35 @@ def test_every_real_las_file_comes_back_byte_for_byte(data_folder, tmp_path, fol
         assert (tmp_path / f"back.{suffix}").read_bytes() == path.read_bytes(), path.name
         n_compared += 1
     assert n_compared >= 3
+
+
+def test_no_more_is_read_back_at_once_than_the_points_have_and_memory_takes():
+    assert _read_at_once(50, 65535) == 50
+    assert _read_at_once(0, 20) == 1
+    assert _read_at_once(10**7, 20) == 10**6
+    assert _read_at_once(10**6, 65535) * 65535 <= 1 << 26
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
+@pytest.mark.parametrize("suffix", [".las", ".laz"])
+def test_records_of_64_kb_come_back_in_little_memory(tmp_path, suffix):
+    """A million of them were asked for to read fifty back: a MemoryError."""
+    records = las_bytes(2, 0, extra=65535 - RECORD_LENGTHS[0], n=50)
+    (tmp_path / "a.las").write_bytes(records)
+    program = f"""
+import resource
+from wavelet_gis.io.las import read_cloud, write_cloud
+cloud = read_cloud({str(tmp_path / "a.las")!r})[0]
+with open("/proc/self/statm") as stream:
+    used = int(stream.read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + (1 << 29), used + (1 << 29)))
+write_cloud({str(tmp_path / ("back" + suffix))!r}, cloud)
+"""
+    if not os.path.exists("/proc/self/statm"):
+        pytest.skip("the system does not tell how much memory a process has")
+    ran = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", program], capture_output=True, text=True, check=False
+    )
+    assert ran.returncode == 0, ran.stderr
+    if suffix == ".las":
+        assert (tmp_path / "back.las").read_bytes() == records
