@@ -1,13 +1,15 @@
 """What every algorithm does in a QGIS without further Python packages: time, memory, response.
 
     QGIS_PYTHON benchmarks/cost/stock_qgis.py [--packages stock|all] [--only WORD,WORD] [--cancel]
+        [--page FILE]
 
 Run it with the Python of QGIS; the plugin is the zip of the last commit. Each case is a process of
 its own in which packages that QGIS does not bring are hidden; its input is synthetic terrain of
 1,000 x 1,000 cells, or 500,000 points. Seconds are those of the processor, so that other work on
-the machine does not count. ``moves`` is the longest time in which the progress bar showed nothing
-new, ``asks`` the longest without a look at the cancel button. With ``--cancel`` each case is run
-again and cancelled where it had looked away for longest; ``stops`` is how long it took to end.
+the machine does not count. ``bar`` is the longest time in which the progress bar showed nothing
+new, ``cancel`` the longest without a look at the cancel button. With ``--cancel`` each case is run
+again and cancelled where it had looked away for longest, and how long it took to end is said.
+``--page docs/howto/qgis.md`` puts the rows into the table there.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import resource
 import shutil
 import struct
@@ -199,6 +202,8 @@ LEFT_OUT = dict.fromkeys(
     ),
     "a model; its steps are algorithms of these cases, and of QGIS",
 )
+
+HEAD = "| Algorithm | time, s | memory, MB | bar, s | cancel, s |\n" + "| --- " * 5 + "|\n"
 
 #: Files of the inputs.
 NAMES = {
@@ -484,6 +489,28 @@ def run(folder: Path, case: str, packages: str, cancel_at: float, n: int) -> dic
     raise SystemExit(f"{case}: {done.stdout}{done.stderr}")
 
 
+def row_of(case: str, seen: dict) -> str:
+    """Return the row of a case in the table."""
+    if seen["refused"]:
+        missing = re.match(r"missing Python package: ([\w, -]+)\.", seen["refused"])
+        assert missing, seen["refused"]
+        return f"| {case} | refused: needs {missing[1]} | | | |"
+    return (
+        f"| {case} | {seen['seconds']:.1f} | {seen['megabytes']:.0f} | {seen['moves'][0]:.1f} "
+        f"| {seen['asks'][0]:.1f} |"
+    )
+
+
+def put_into(page: Path, rows: dict[str, str]) -> None:
+    """Put rows into the table of a page, which keeps those of cases that were not run."""
+    before, table, after = re.split(
+        r"(?<=<!-- stock -->\n)|(?=<!-- end of stock -->)", page.read_text()
+    )
+    there = {line.split(" | ")[0][2:]: line for line in table.splitlines()[2:]}
+    lines = [rows.get(case, there.get(case)) for case in CASES]
+    page.write_text(before + HEAD + "".join(f"{line}\n" for line in lines if line) + after)
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -495,6 +522,9 @@ def main() -> None:
     )
     parser.add_argument("--cells", type=int, default=1000, help="rows and columns of the DEM")
     parser.add_argument("--cancel", action="store_true", help="run again, and cancel")
+    parser.add_argument(
+        "--page", type=Path, help="whose table, between marks, is brought up to date"
+    )
     parser.add_argument("--folder", type=Path, help="where inputs are kept, to be used again")
     options = parser.parse_args()
     folder = options.folder or Path(tempfile.mkdtemp(prefix="terrain-wavelets-"))
@@ -509,24 +539,24 @@ def main() -> None:
         if not (folder / NAMES[str(made[0])[1:-1]]).exists():
             seen = run(folder, name, "all", 0.0, options.cells)
             assert not seen["refused"], seen
-    print("| algorithm | time, s | memory, MB | moves, s | asks, s | stops, s | refused |")
-    print("| --- " * 7 + "|")
+    print(HEAD, end="")
+    rows = {}
     for case in CASES:
         if not any(word.lower() in case.lower() for word in options.only.split(",")):
             continue
         seen = run(folder, case, options.packages, 0.0, options.cells)
-        stops = ""
+        stops = None
         if options.cancel and not seen["refused"]:
             at = max(seen["asks"][1], 0.05) + 0.05
-            again = run(folder, case, options.packages, at, options.cells)
-            stops = "ended first" if again["stops"] is None else f"{again['stops']:.1f}"
-        print(
-            f"| {case} | {seen['seconds']:.1f} | {seen['megabytes']:.0f} | {seen['moves'][0]:.1f} "
-            f"| {seen['asks'][0]:.1f} | {stops} | {seen['refused']} |",
-            flush=True,
-        )
+            stops = run(folder, case, options.packages, at, options.cells)["stops"]
+        rows[case] = row_of(case, seen)
+        print(rows[case], flush=True)
+        if stops is not None:
+            print(f"    stops after {stops:.1f} s", file=sys.stderr, flush=True)
         for kind in ("moves", "asks"):
             print(f"    {kind}: {seen[kind]}", file=sys.stderr, flush=True)
+    if options.page:
+        put_into(options.page, rows)
 
 
 if __name__ == "__main__":

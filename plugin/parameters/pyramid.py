@@ -54,7 +54,9 @@ def save(
     from ..qgis_io.geopackage import add_layers
 
     request.stage(tr("Writing the pyramid"))
-    middle = (start + stop) / 2
+    # a vertex of the pyramid and a row of a layer take about as long
+    n_vertices, n_rows = geo.pyramid.n_vertices(geo.pyramid.n_levels), n_features(geo, layers)
+    middle = start + (stop - start) * n_vertices / (n_vertices + n_rows)
     with new_file(path, overwrite=True) as scratch:
         is_alone = layers == "none"
         write_pyramid(scratch, geo, request.progress(start, middle), is_alone=is_alone)
@@ -65,7 +67,7 @@ def save(
                 layer_wkt(geo),
                 request.feedback,
                 request.progress(middle, stop),
-                n_features(geo, layers),
+                n_rows,
             )
     remember(path)
     _add_to_map(request, path)

@@ -285,6 +285,6 @@ def _numbers(path: Path) -> Iterator[list[float]]:
 
 KINDS = {
     "las": Kind(las_bases, read_las, cloud_is_wrong, telling=""),
-    "tif": Kind(tif_bases, read_tif, raster_is_wrong, telling="not without complaint"),
+    "tif": Kind(tif_bases, read_tif, raster_is_wrong, telling="but GDAL reported"),
     "mesh": Kind(mesh_bases, read_mesh, mesh_is_wrong),
 }

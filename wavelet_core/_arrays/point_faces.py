@@ -68,10 +68,15 @@ def group_pairs(pairs, indptr, others):
 
 
 def sort_groups(start, stop, indptr, others, is_new):
-    low = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
-    others[:] = others[np.lexsort((others, low))]
-    is_new[:] = True
-    is_new[1:] = (low[1:] != low[:-1]) | (others[1:] != others[:-1])
+    for here in _blocks(start, stop):
+        pairs = slice(indptr[here.start], indptr[here.stop])
+        low = np.repeat(
+            np.arange(here.start, here.stop), np.diff(indptr[here.start : here.stop + 1])
+        )
+        high = others[pairs][np.lexsort((others[pairs], low))]
+        others[pairs] = high
+        is_new[pairs] = True
+        is_new[pairs][1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
 
 
 def look_up_pairs(start, stop, nearest, classes, indptr, heads, joined, is_asked):

@@ -16,9 +16,13 @@ from .._kernels._jit import run_in_ranges
 from .._kernels.surface_choice import OUT_OF_QUESTION, find_first
 from .._validate import FloatArray
 from ..errors import PyramidError
+from ..progress import Progress, report
 from ._mutable_level import CollapseStep
 from .questions import places_of_targets, targets_at
 from .recorded import Manner, RecordedLevel, Start
+
+#: Share of the time in which the finest level is set up.
+_OF_START = 0.2
 
 __all__ = ["places_of_steps", "steps_at_places"]
 
@@ -29,6 +33,7 @@ def places_of_steps(
     locked: NDArray[np.bool_],
     outline_tolerance: float,
     steps: Sequence[CollapseStep],
+    progress: Progress | None = None,
 ) -> list[NDArray[np.uint8]] | None:
     """Return the places of the targets of each step; None where they do not give them to the bit.
 
@@ -42,8 +47,11 @@ def places_of_steps(
         Of the analysis.
     steps : sequence of CollapseStep
         The finest first.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     level = _start(plan, faces, locked, outline_tolerance)
+    report(progress, _OF_START)
     places = []
     for step in steps:
         if len(step.odd) == 0 or not (np.diff(step.odd) > 0).all():
@@ -56,6 +64,8 @@ def places_of_steps(
         if taken is None or not _are_alike(taken, step):
             return None
         places.append(found.astype(np.uint8))
+        share = 1.0 - level.n_vertices / len(plan)
+        report(progress, _OF_START + (1.0 - _OF_START) * share)
     return places
 
 

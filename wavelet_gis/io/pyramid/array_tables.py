@@ -83,7 +83,7 @@ def write_arrays(
     pool : ThreadPoolExecutor
         Compresses.
     packed : callable
-        Called with bytes that were compressed; those of an array are `work_of` it, or a few more.
+        Called with bytes that were compressed; those of an array are `work_of` it.
     """
     for name, array in arrays.items():
         header, chunks = _smallest(array, pool, packed)
@@ -117,7 +117,8 @@ def _smallest(
     if header.n_bytes <= MAX_EXPANSION * sum(map(len, kept)):
         return header, kept
     plain = header_of(array)
-    return plain, encode_array(array, pool, plain, packed)
+    # These bytes count already; counted again, the bar would be at its end too early.
+    return plain, encode_array(array, pool, plain, lambda n_bytes: packed(0))
 
 
 def read_entries(connection: sqlite3.Connection, *, with_checksums: bool) -> dict[str, Entry]:

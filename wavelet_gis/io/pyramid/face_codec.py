@@ -22,7 +22,7 @@ from wavelet_core.mesh.point_faces import (
     sorted_edges,
     triangles_of,
 )
-from wavelet_core.progress import part_of, report
+from wavelet_core.progress import part_of, report, watched_part
 
 __all__ = ["N_EDGE_CLASSES", "FaceRecord", "decode_faces", "encode_faces"]
 
@@ -34,6 +34,8 @@ N_EDGE_CLASSES = 8
 
 #: Coordinates beyond this have squares that are no exact floats.
 LARGEST_COORDINATE = 2**25
+
+_CANCELLED = "the work on the faces was cancelled; nothing was kept."
 
 #: Shares of the time after which the edges are sorted, and every pair is answered for.
 _OF_EDGES, _OF_PAIRS = 0.1, 0.7
@@ -70,8 +72,9 @@ def encode_faces(
         return None
     n = len(points)
     x, y = _local(points)
-    edges = sorted_edges(_sides(faces), n)
-    report(progress, _OF_EDGES)
+    with watched_part(progress, 0.0, _OF_EDGES, _CANCELLED):
+        edges = sorted_edges(_sides(faces), n)
+    report(progress, _OF_EDGES, _CANCELLED)
     answers, far = _answers_by(x, y, edges, part_of(progress, _OF_EDGES, _OF_PAIRS))
     triangles = triangles_of(x, y, edges, part_of(progress, _OF_PAIRS, 1.0))
     is_face = _are_among(faces, triangles, n)

@@ -24,6 +24,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from wavelet_core import Cancelled, Progress, PyramidError, WaveletError
+from wavelet_core.lifting.recorded import is_error_guided
 from wavelet_core.progress import part_of, report
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.geopackage import (
@@ -72,8 +73,9 @@ __all__ = [
     "write_pyramid",
 ]
 
-#: Part of the time of writing that is spent before the first array is written.
-_SHARE_OF_ENCODING = 0.5
+#: Part of the time of writing that is spent before the first array is written: where the pyramid
+#: follows from its input, and where the arrays of its steps are listed, which are large.
+_SHARE_OF_ENCODING, _SHARE_OF_LISTING = 0.5, 0.1
 
 #: Part of the time of writing that is spent before the file is read back.
 _SHARE_OF_WRITING = 0.8
@@ -109,7 +111,8 @@ def write_pyramid(
     OutputFileError
         When the file cannot be written, or its reader does not take it.
     """
-    metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, _SHARE_OF_ENCODING))
+    share = _SHARE_OF_ENCODING if is_error_guided(geo.pyramid) else _SHARE_OF_LISTING
+    metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, share))
     texts = {name: json.dumps(value, allow_nan=False, sort_keys=True) for name, value in
              metadata.items()}  # fmt: skip
     total = sum(array.nbytes for array in arrays.values())
@@ -121,7 +124,7 @@ def write_pyramid(
             register_attributes_table(connection, table, description)
         write_level_rows(connection, geo)
         work = sum(map(work_of, arrays.values()))
-        of_arrays = part_of(progress, _SHARE_OF_ENCODING, _SHARE_OF_WRITING)
+        of_arrays = part_of(progress, share, _SHARE_OF_WRITING)
         write_arrays(connection, arrays, pool, _share_of(work, of_arrays))
         entries = read_entries(connection, with_checksums=True)
         checksums = checksums_of(texts, read_level_rows(connection), entries)
@@ -231,12 +234,12 @@ def _share_of(total: int, progress: Progress | None) -> Callable[[int], None]:
     """Return a function that takes numbers of bytes and reports the share of all that are done."""
     done = 0
 
-    def count(n_bytes: int) -> None:
+    def add(n_bytes: int) -> None:
         nonlocal done
         done += n_bytes
         report(progress, min(done / max(total, 1), 1.0), _CANCELLED)
 
-    return count
+    return add
 
 
 def _read_back(
@@ -247,7 +250,15 @@ def _read_back(
     progress: Progress | None,
 ) -> None:
     """Have the reader take a file that was just written, without room for its arrays."""
-    verified = _share_of(total, part_of(progress, _SHARE_OF_WRITING, 1.0))
+    # Arrays are read between levels where these are built again; both count half then.
+    shares = {"bytes": 0.0, "levels": 0.0}
+
+    def count(kind: str, share: float) -> None:
+        shares[kind] = share
+        done = sum(shares.values()) / 2
+        report(progress, _SHARE_OF_WRITING + (1.0 - _SHARE_OF_WRITING) * done, _CANCELLED)
+
+    verified = _share_of(total, lambda share: count("bytes", share))
     try:
         with open_untrusted(path) as connection, _pool() as pool:
             contents = Contents(connection)
@@ -256,7 +267,9 @@ def _read_back(
                 contents,
                 WrittenArrays(connection, pool, contents.entries, size, arrays, verified),
                 geo.pyramid,
+                lambda share: count("levels", share),
             )
+        report(progress, 1.0, _CANCELLED)
     except Cancelled:
         raise
     except WaveletError as error:

@@ -109,7 +109,8 @@ def pyramid_to_parts(
     record = None if mesh is None else record_of(pyramid, mesh, of_record)
     if record is None:
         recorded = None
-        arrays.update(placed_arrays(pyramid) or listed_arrays(pyramid))
+        of_places = part_of(progress, _SHARE_OF_SOURCE, 1.0)
+        arrays.update(placed_arrays(pyramid, of_places) or listed_arrays(pyramid))
         has_cells = _is_plan_of_cells(pyramid, geo.origin, geo.frame)
         if has_cells:
             del arrays["horizontal"]
@@ -310,7 +311,9 @@ def listed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]]:
     return arrays
 
 
-def placed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]] | None:
+def placed_arrays(
+    pyramid: Pyramid, progress: Progress | None = None
+) -> dict[str, NDArray[Any]] | None:
     """Return the arrays of a pyramid whose filters follow from its collapses; None for others."""
     if not is_error_guided(pyramid) or pyramid.horizontal is None or pyramid.n_levels == 0:
         return None
@@ -323,6 +326,7 @@ def placed_arrays(pyramid: Pyramid) -> dict[str, NDArray[Any]] | None:
             CollapseStep(*(getattr(step, name) for name in _STEP_ARRAYS))
             for step in reversed(pyramid.steps)
         ],
+        progress,
     )
     if places is None:
         return None

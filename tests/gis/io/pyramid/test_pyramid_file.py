@@ -275,7 +275,10 @@ def test_reading_that_is_cancelled_is_no_damaged_file(name, read, request):
 def test_listed_and_placed_levels_are_reported_too(design, tmp_path):
     mesh = random_delaunay(400, seed=3)
     geo = record_of(mesh, levels=4, **design)
-    write_pyramid(tmp_path / "p.gpkg", geo)
+    written = []
+    write_pyramid(tmp_path / "p.gpkg", geo, written.append)
+    assert written == sorted(written)
+    assert len([fraction for fraction in written if fraction > 0.8]) > 4  # read back
     seen = []
     assert_same_pyramid(read_pyramid(tmp_path / "p.gpkg", seen.append).pyramid, geo.pyramid)
     assert len(seen) >= 4

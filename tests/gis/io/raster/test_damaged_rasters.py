@@ -4,6 +4,7 @@ import struct
 
 import pytest
 from gis.samples import hills, write_tif
+from tools.readers import KINDS
 
 from wavelet_gis.errors import RasterWarning
 from wavelet_gis.workflows.open import open_input
@@ -32,6 +33,7 @@ def test_what_gdal_complains_of_is_told(tmp_path, capfd):
     assert "expected 56x20, got 24x20" in told[0]
     notes = [note for note in terrain.notes if note.code == "raster_read_with_complaints"]
     assert notes[0].text.startswith("x.tif: read, but GDAL reported: ")
+    assert KINDS["tif"].telling in notes[0].text  # the fuzzer knows it by these words
     assert capfd.readouterr().err == ""
 
 
