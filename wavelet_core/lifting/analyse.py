@@ -328,10 +328,9 @@ class _Analysis:
     def _in_input_units(self, figures: list[LevelFigures]) -> tuple[LevelFigures, ...] | None:
         """Return the figures of the levels, the coarsest first; None where they are not those.
 
-        With a tolerance of the outline, input vertices that no face covers count in the analysis;
-        with points of a finer input, these do.
+        With a tolerance of the outline, input vertices that no face covers count in the analysis.
         """
-        if self._options.outline_tolerance or self._points is not None:
+        if self._options.outline_tolerance:
             return None
         squares = self._scale.height_weights() ** 2
         return tuple(

@@ -82,7 +82,8 @@ class LevelFigures(NamedTuple):
     """Sizes and errors of a level.
 
     n_vertices, n_faces : int
-    squared_errors : float, sum of the squared height errors of all input vertices
+    n_points : int, input vertices, and points of a finer input if there are any
+    squared_errors : float, sum of the squared height errors of all of these
     largest_error : float, the largest of them
     squared_changes : (c,) float64, of each weighted column the sum of the squared differences of
         the level's vertices from the input
@@ -90,6 +91,7 @@ class LevelFigures(NamedTuple):
 
     n_vertices: int
     n_faces: int
+    n_points: int
     squared_errors: float
     largest_error: float
     squared_changes: FloatArray
@@ -281,6 +283,7 @@ class SurfaceLevel:
         return LevelFigures(
             self.n_vertices,
             int(np.count_nonzero(self._faces.lives)),
+            self.n_input,
             self.squared_errors(),
             self.largest_error(),
             (changes**2).sum(axis=0),

@@ -335,7 +335,7 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
         origin=MeshOrigin(),
         source_name=piece.name,
     )
-    return geo.with_errors(points=points[:, :3])
+    return geo.with_errors(points=None if plan.is_error_guided else points[:, :3])
 
 
 def _points_of(folder: str, plan: TilePlan, piece: Piece) -> NDArray[np.float64]:

@@ -5,7 +5,7 @@ import pytest
 
 from wavelet_core import OptionError, TriangleMesh, analyse, synthetic
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
-from wavelet_core.metrics import surface_errors
+from wavelet_core.metrics import level_errors, surface_errors
 
 MESH = synthetic.hills(20, 30)
 WEIGHTS = np.random.default_rng(4).uniform(0.5, 3.0, MESH.n_vertices)
@@ -105,3 +105,13 @@ def test_attributes_of_the_points_count_too():
 def test_points_are_for_the_partition_that_measures_errors():
     with pytest.raises(OptionError, match=r"points are for partition 'surface'"):
         analyse(MESH, partition="quadric", points=MESH.vertices)
+
+
+def test_errors_of_the_levels_are_those_at_the_points():
+    fine = synthetic.hills(40, 50)
+    start = analyse(fine, target_vertices=500)[0]
+    pyramid = analyse(start, levels=5, points=fine.vertices)
+    for level, row in enumerate(level_errors(pyramid)):
+        errors = surface_errors(pyramid[level], fine.vertices)
+        assert row.rmse_surface == pytest.approx(np.sqrt(np.mean(errors**2)))
+        assert row.max_error_surface == pytest.approx(np.abs(errors).max())
