@@ -61,6 +61,9 @@ _EPOCH = "SOURCE_DATE_EPOCH"
 
 _BYTES_AT_ONCE = 1 << 22
 
+#: Points at which the errors of each level of a group of more than four tiles are measured.
+POINTS_MEASURED = 200_000
+
 #: Points of the input, in those of a tile, that a group knows besides its vertices. All that four
 #: tiles have take 150 bytes for each vertex that a group begins with, whose analysis takes 400.
 POINTS_OF_GROUP = 4.0
@@ -236,11 +239,16 @@ def join(
     )
     # A cell that several pieces have was given the integral 1 in each, and counts once.
     counted = np.bincount(place, np.concatenate(integrals)) - (np.bincount(place) - 1.0)
-    rows, columns = np.divmod(unique, plan.shape[1])
+    vertices = np.column_stack([_in_frame(plan, unique), signal[first, 0]])
+    return Joined(vertices, faces, unique, counted, signal[first, 1:], meshes[0].attribute_names)
+
+
+def _in_frame(plan: TilePlan, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return x and y of cells in the working frame, the same wherever they are asked for."""
+    rows, columns = np.divmod(cells, plan.shape[1])
     x, y = plan.places(rows, columns)
     frame = plan.local_frame
-    vertices = np.column_stack([frame.local_x(x), frame.local_y(y), signal[first, 0]])
-    return Joined(vertices, faces, unique, counted, signal[first, 1:], meshes[0].attribute_names)
+    return np.column_stack([frame.local_x(x), frame.local_y(y)])
 
 
 class _Made(NamedTuple):
@@ -315,7 +323,7 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
     if not meshes:
         return None
     whole = join(plan, meshes, integrals)
-    points = _points_of(folder, plan, piece)
+    points, sample = _points_of(folder, plan, piece, whole.cells)
     rows, columns = np.divmod(whole.cells, plan.shape[1])
     locked = plan.is_shared(piece, rows, columns)
     if plan.points is not None:  # they are on no line, but on the outline near one
@@ -335,26 +343,38 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
         origin=MeshOrigin(),
         source_name=piece.name,
     )
-    return geo.with_errors(points=None if plan.is_error_guided else points[:, :3])
+    # With the points that the analysis knows, vertices are more than their part of a larger group.
+    is_all = plan.is_error_guided and piece.stage == 1
+    return geo.with_errors(points=None if is_all else sample)
 
 
-def _points_of(folder: str, plan: TilePlan, piece: Piece) -> NDArray[np.float64]:
-    """Return points of the input in a group, as many as four tiles have: x, y, z and attributes.
+def _points_of(
+    folder: str, plan: TilePlan, piece: Piece, vertices: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the points of the input that a group knows, and x, y, z of those it is measured at.
 
-    All of them in a group of four tiles, and beyond that the same part of each tile, in no order.
+    It knows about as many as four tiles have: all of them in a group of four tiles, beyond that the
+    same part of each, in no order, and those that it has ``vertices`` at, by their cells. Errors
+    are measured at a part of them all, in no order either.
     """
     from wavelet_gis.io.pyramid.pyramid_file import read_input
 
     share = POINTS_OF_GROUP / 4.0**piece.stage
-    found = []
+    found, cells = [], []
     for tile in plan.tiles(piece):
         record = read_record(folder, tile)
         if record is None or record["status"] != "whole":
             continue
         mesh = read_input(Path(folder) / PIECES / f"{tile.name}.gpkg").pyramid.mesh(0)
-        is_taken = _scattered(cells_of(plan, mesh)) < share
-        found.append(np.hstack([mesh.vertices, mesh.attributes])[is_taken])
-    return np.concatenate(found)
+        of_tile = cells_of(plan, mesh)
+        is_taken = (_scattered(of_tile) < share) | np.isin(of_tile, vertices)
+        cells.append(of_tile[is_taken])
+        found.append(np.hstack([mesh.vertices[:, 2:], mesh.attributes])[is_taken])
+    unique, first = np.unique(np.concatenate(cells), return_index=True)  # two tiles have a border
+    points = np.hstack([_in_frame(plan, unique), np.concatenate(found)[first]])
+    order = _scattered(unique)
+    n_known = max(int(np.count_nonzero(order < share)), 1)
+    return points, points[order < share * min(POINTS_MEASURED / n_known, 1.0), :3]
 
 
 def _scattered(cells: NDArray[np.int64]) -> NDArray[np.float64]:
