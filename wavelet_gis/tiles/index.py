@@ -16,7 +16,7 @@ from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.geopackage import check_database, check_rows
 from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.model.dem import grid_bounds
-from wavelet_gis.tiles.piece import PIECES, read_record
+from wavelet_gis.tiles.piece import PIECES, level_handed_on, read_record
 from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
 
 __all__ = ["INDEX", "TileIndex", "is_index", "open_index", "write_index"]
@@ -52,9 +52,18 @@ class TileIndex:
             if self.records.get(piece, {}).get("status") == "whole"
         ]
 
+    def coarsest_of(self, piece: Piece) -> int:
+        """Return the level of a piece that the group above begins with; 0 where there is none."""
+        above = Piece(piece.stage + 1, piece.row // 2, piece.column // 2)
+        inputs = self.records.get(above, {}).get("inputs", {})
+        return level_handed_on(str(inputs.get(piece.name, "")))
+
     def levels_of(self, stage: int) -> int:
         """Return the number of levels of a stage; 0 where it has no piece."""
-        return max((self.records[piece]["n_levels"] for piece in self.whole(stage)), default=0)
+        return max(
+            (self.records[p]["n_levels"] - self.coarsest_of(p) for p in self.whole(stage)),
+            default=0,
+        )
 
     @property
     def n_levels(self) -> int:

@@ -296,8 +296,8 @@ def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:
 
 
 def _level(index: TileIndex, piece: Piece, below: int) -> int:
-    """Return the level of a piece that is so far below its finest, or its coarsest."""
-    return max(int(index.records[piece]["n_levels"]) - below, 0)
+    """Return the level of a piece that is so far below its finest, or its last one in the whole."""
+    return max(int(index.records[piece]["n_levels"]) - below, index.coarsest_of(piece))
 
 
 def _loaded(index: TileIndex, piece: Piece, below: int) -> GeoPyramid:

@@ -48,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--levels",
         type=int,
         metavar="N",
-        help="of each tile, and of each group of four but the last (8; of point clouds 14)",
+        help="the most of each tile, and of each group of four but the last (64)",
     )
     where = parser.add_mutually_exclusive_group()
     where.add_argument(

@@ -24,6 +24,7 @@ from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import frame_of_bounds, require_plan
 from wavelet_gis.tiles.cloud.borders import FAR
 from wavelet_gis.tiles.plan import (
+    LEVELS,
     PointLattice,
     SourceFile,
     TilePlan,
@@ -31,11 +32,7 @@ from wavelet_gis.tiles.plan import (
     ends_of_tiles,
 )
 
-__all__ = ["LEVELS_OF_POINTS", "POINTS_IN_TILE", "plan_of_clouds", "shift_of"]
-
-#: Levels of a tile of points and of each group but the last: a level takes some 11 % of them, so a
-#: group of four begins with no more than a tile does, at any stage.
-LEVELS_OF_POINTS = 14
+__all__ = ["POINTS_IN_TILE", "plan_of_clouds", "shift_of"]
 
 #: Points of a tile where no size is given.
 POINTS_IN_TILE = 1_000_000
@@ -56,7 +53,7 @@ def plan_of_clouds(
     data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     *,
     tile: float | tuple[float, float] | None = None,
-    levels: int = LEVELS_OF_POINTS,
+    levels: int = LEVELS,
     crs: str | None = None,
     vertical_unit: str | None = None,
     attributes: Sequence[str] = (),
@@ -76,7 +73,7 @@ def plan_of_clouds(
         Side of a tile, or its width and height, in the unit of x and y; by default such that a
         tile has about a million points.
     levels : int
-        Of each tile, and of each group but the last.
+        The most of each tile, and of each group but the last.
     crs, vertical_unit, attributes, classes, keep_noise, keep_withheld, duplicates
         See `wavelet_gis.open`. Heights above the ground are no attribute here.
     wavelets : dict, optional
