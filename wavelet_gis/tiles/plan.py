@@ -47,8 +47,9 @@ TILE = 1024
 LEVELS = 64
 
 #: Part of its vertices to which a piece goes down, far enough for flat ones; rough pieces hand on a
-#: level long before (`wavelet_gis.tiles.handover`). And largest share that a level takes, so small
-#: that there is always one that is about as good as a TIN made for its size.
+#: level long before (`wavelet_gis.tiles.handover`). And largest share that a level takes: with 0.25
+#: the level of a quarter of the vertices has up to 1.4 times the RMSE of a TIN made for its size
+#: (autzen_trim), with 0.12 up to 1.09, in the same time.
 _COARSEST_SHARE, _SHARE_OF_LEVEL = 1 / 32, 0.12
 
 #: Options of `wavelet_core.analyse` that leave x and y of the vertices in place.
