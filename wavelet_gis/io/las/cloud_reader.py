@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "NOISE_CLASSES",
+    "NothingInBoxError",
     "decoding",
     "laspy_header",
     "laz_job",
@@ -59,6 +60,10 @@ Box = tuple[float, float, float, float]
 
 #: Point formats with references to waveform packets.
 _WAVEFORM_FORMATS = (4, 5, 9, 10)
+
+
+class NothingInBoxError(InputFileError):
+    """A file without a point in the box that was asked for."""
 
 
 def read_cloud(
@@ -263,7 +268,7 @@ def _inside(
     )
     inside = (x >= bbox[0]) & (x <= bbox[2]) & (y >= bbox[1]) & (y <= bbox[3])
     if not inside.any():
-        raise InputFileError(
+        raise NothingInBoxError(
             "{name}: there are no points in the box; x runs from {x_low:g} to {x_high:g}, y from "
             "{y_low:g} to {y_high:g}, give another {0}.",
             "bbox",

@@ -9,7 +9,7 @@ from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import Georeference
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
-from wavelet_gis.io.las.cloud_reader import read_cloud
+from wavelet_gis.io.las.cloud_reader import NothingInBoxError, read_cloud
 from wavelet_gis.io.las.dimensions import HEIGHT_ABOVE_GROUND
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.points.merged import merged_cloud
@@ -31,7 +31,8 @@ def read_clouds(
         Whether the CRS, or the unit of z, is given otherwise and need not agree.
     **options
         See `wavelet_gis.io.las.read_cloud`. Classes are chosen in each file, of which some may
-        have none; heights above the ground are those above the ground of the same file.
+        have none; heights above the ground are those above the ground of the same file. Files
+        without a point in the box are passed over.
 
     Raises
     ------
@@ -44,8 +45,17 @@ def read_clouds(
                 f"{path}: {paths[0]} is a point cloud, this does not end in "
                 f"{any_of(CLOUD_SUFFIXES)}; name files of one kind."
             )
-    read = [read_cloud(path, **options) for path in paths]
-    cloud = merged_cloud(paths, [cloud for cloud, _ in read])
+    read, named = [], []
+    for path in paths:
+        try:
+            read.append(read_cloud(path, **options))
+            named.append(path)
+        except NothingInBoxError:
+            if path == paths[-1] and not read:
+                raise
+    if len(read) == 1:
+        return read[0]
+    cloud = merged_cloud(named, [cloud for cloud, _ in read])
     if any(attribute.dimension == HEIGHT_ABOVE_GROUND for attribute in cloud.attributes):
         note(
             "hag_by_file",
@@ -53,4 +63,4 @@ def read_clouds(
             "borders of files they are less reliable",
         )
     places = [place for _, place in read]
-    return cloud, agreed(paths, places, any_crs=any_crs, any_unit=any_unit)
+    return cloud, agreed(named, places, any_crs=any_crs, any_unit=any_unit)
