@@ -136,3 +136,18 @@ def test_a_table_may_begin_with_a_comment(tmp_path, comment):
     np.testing.assert_array_equal(read_point_table(path).points[0], first)
     path.write_text(f"{comment}\nx;y;z\n0;1;10\n")
     np.testing.assert_array_equal(read_point_table(path).points[0], [0, 1, 10])
+
+
+@pytest.mark.parametrize(("option", "value"), [("attributes", ("name",)), ("z_field", "name")])
+def test_a_field_of_words_is_refused_in_one_line(tmp_path, option, value):
+    """It ended in ``could not convert string to float``."""
+    path = tmp_path / "points.gpkg"
+    points = shapely.to_wkb(np.array([shapely.Point(*corner) for corner in TRIANGLE], dtype=object))
+    pyogrio.raw.write(
+        path, points, [np.array(["a", "b", "c"], dtype=object)], ["name"], crs="EPSG:25832",
+        geometry_type="Point Z", driver="GPKG",
+    )  # fmt: skip
+    with pytest.raises(
+        InputFileError, match=rf"'name' does not hold numbers; name another with {option}"
+    ):
+        open_input(path, **{option: value})
