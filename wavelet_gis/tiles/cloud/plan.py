@@ -14,10 +14,11 @@ from wavelet_core.errors import OptionError
 from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import CoordinateSystem, Georeference, LocalFrame
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, EPT, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
 from wavelet_gis.io.las.cloud_reader import laspy_header, warn_of_crs
 from wavelet_gis.io.las.dimensions import HEIGHT_ABOVE_GROUND
+from wavelet_gis.io.las.ept import nodes_within, read_ept
 from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.points.aside import DUPLICATE_RULES
 from wavelet_gis.model.points.cloud import PointCloud
@@ -104,7 +105,10 @@ def plan_of_clouds(
             "attributes",
         )
     wavelets = checked_wavelets(wavelets)
-    paths = [os.path.abspath(path) for path in files_of(data)]
+    given = files_of(data)
+    if os.path.basename(given[0]) == EPT and not given[1:]:
+        given = nodes_within(read_ept(given[0]))
+    paths = [os.path.abspath(path) for path in given]
     heads = _heads(paths)
     places = [head.place for head in heads]
     for path, one in zip(paths, places, strict=True):
