@@ -47,6 +47,8 @@ _REACH = 16
 #: Largest p and q of a ratio.
 _LARGEST_TERM = 64
 
+#: Steps from the first offset to a point, and from end to end: a cell of the whole, by rows and
+#: columns, is one int64.
 _LARGEST_SHIFT = np.iinfo(np.int32).max
 
 
@@ -296,10 +298,11 @@ def _extents(
         lows.append([low for low, _ in ends])
         highs.append([high for _, high in ends])
     low, high = np.array(lows), np.array(highs)
-    if max(-low.min(), high.max()) > _LARGEST_SHIFT:
+    longest = (high.max(axis=0) - low.min(axis=0)).max() + 1
+    if max(-low.min(), high.max(), longest) > _LARGEST_SHIFT:
         raise InputFileError(
             f"{joint_name(list(paths))}: the files lie too far from one another for coordinates "
-            f"in steps of {max(map(abs, first.scales)):g}; tile them in parts."
+            f"in steps of {max(map(abs, first.scales[:2])):g}; tile them in parts."
         )
     return low.astype(np.int64), high.astype(np.int64)
 
