@@ -1,5 +1,8 @@
 """Work that will not fit is refused before it begins, with the figures."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -38,3 +41,40 @@ def test_an_analysis_asks_first(monkeypatch, tif):
         with pytest.raises(InputFileError, match="takes some"):
             work()
     assert np.isfinite(terrain.mesh.vertices).all()
+
+
+def group(folder, limit, used, cached=0):
+    """Write what the system says of a control group."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "memory.max").write_text(f"{limit}\n")
+    (folder / "memory.current").write_text(f"{used}\n")
+    (folder / "memory.stat").write_text(f"anon 7\ninactive_file {cached}\nactive_file 5\n")
+
+
+def test_files_that_are_cached_are_no_memory_in_use(tmp_path):
+    """A container that had read large files had no memory left, and refused every large input."""
+    group(tmp_path, 8_000, 7_900, cached=6_000)
+    assert _memory._of_group(tmp_path, "/") == 6_100
+    (tmp_path / "memory.stat").unlink()
+    assert _memory._of_group(tmp_path, "/") == 100
+
+
+def test_a_group_has_no_more_than_those_around_it(tmp_path):
+    """Only its own limit counted, and that of the root."""
+    group(tmp_path / "user" / "job", "max", 300)
+    group(tmp_path / "user", 5_000, 1_000)
+    assert _memory._of_group(tmp_path, "/user/job") == 4_000
+    group(tmp_path / "user" / "job", 900, 300)
+    assert _memory._of_group(tmp_path, "/user/job") == 600
+    assert _memory._of_group(tmp_path / "none", "/user/job") is None
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_addresses_in_use_are_not_free():
+    """The limit of ``ulimit -v`` was taken for what is left of it."""
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30));"
+        "taken = bytearray(3 << 30); from wavelet_gis import _memory; print(_memory._of_process())"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert 1 << 30 < int(said.stdout) < 5 << 30

@@ -13,7 +13,15 @@ from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
-from wavelet_gis.model.dem import Dem, GridGeometry, InputGrid, cell_plan, dem_mesh
+from wavelet_gis.model.dem import (
+    SAME_AS_NODATA,
+    Dem,
+    GridGeometry,
+    InputGrid,
+    cell_plan,
+    dem_mesh,
+    taken_for_nodata,
+)
 from wavelet_gis.model.exact_restore import (
     CORRECTIONS,
     ExactColumn,
@@ -241,16 +249,19 @@ class RasterOrigin:
 
 
 def _avoiding_nodata(values: NDArray[Any], nodata: float | int | None) -> NDArray[Any]:
-    """Move elevations that fell on the nodata value to its neighbour, so they stay data."""
+    """Move elevations that fell on the nodata value away from it, so that they stay data."""
     if nodata is None or (isinstance(nodata, float) and math.isnan(nodata)):
         return values
-    clash = values == nodata
-    if clash.any():
-        tag = values.dtype.type(nodata)
-        if values.dtype.kind == "f":
-            values[clash] = np.nextafter(tag, values.dtype.type(0))
-        else:
-            values[clash] = tag + 1 if tag < np.iinfo(values.dtype).max else tag - 1
+    clash = taken_for_nodata(values, nodata)
+    if not clash.any():
+        return values
+    tag = values.dtype.type(nodata)
+    if values.dtype.kind != "f":
+        values[clash] = tag + 1 if tag < np.iinfo(values.dtype).max else tag - 1
+    elif nodata == 0:
+        values[clash] = np.finfo(values.dtype).smallest_subnormal
+    else:
+        values[clash] = nodata * (1.0 - 2 * SAME_AS_NODATA)
     return values
 
 
