@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from qgis.core import (
     QgsProcessingOutputNumber,
@@ -18,6 +19,11 @@ from ..ui import dependencies
 from ..ui.enums import REAL_NUMBER, WHOLE_NUMBER
 from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
+
+if TYPE_CHECKING:
+    from wavelet_gis.tiles.globe.tileset import Tileset
+
+    from ..qgis_io.background import Work
 
 
 class WebTerrain(PyramidAlgorithm):
@@ -103,17 +109,23 @@ class WebTerrain(PyramidAlgorithm):
         path = request.text("OUTPUT")
         if Path(path).is_dir() and not any(Path(path).iterdir()):
             Path(path).rmdir()  # a temporary folder, which QGIS has made
-        tiles = terrain_tiles(
-            geo,
-            path,
-            level=level,
-            zoom=request.whole("ZOOM"),
-            max_error=request.size("MAX_ERROR"),
-            fill=request.number("FILL") or 0.0,
-            normals=request.flag("NORMALS"),
-            overwrite=True,
-            progress=request.progress(0.05, 1.0),
-        )
+        finest, max_error = request.whole("ZOOM"), request.size("MAX_ERROR")
+        fill, normals = request.number("FILL") or 0.0, request.flag("NORMALS")
+
+        def write(work: Work) -> Tileset:  # aside, until the last tile is there
+            return terrain_tiles(
+                geo,
+                path,
+                level=level,
+                zoom=finest,
+                max_error=max_error,
+                fill=fill,
+                normals=normals,
+                overwrite=True,
+                progress=work.progress,
+            )
+
+        tiles = request.computed(write, 0.05, 1.0)
         request.say(tr(" zoom   tiles  vertices  largest error (m)"))
         for zoom in tiles.zooms:
             request.say(

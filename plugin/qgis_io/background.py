@@ -3,7 +3,8 @@
 Much of the work is done by single calls of numpy, scipy or Qhull that take many seconds and ask
 nobody. Here the thread of the algorithm waits for them, and looks at the button all the time. Once
 it is pressed the work is left alone: it stops by itself where it next reports its progress, and
-what it came to is dropped. So only what computes may run here, nothing that writes or holds layers.
+what it came to is dropped. So only what computes may run here, or writes aside and cleans up when
+it is stopped; nothing that holds layers.
 """
 
 from __future__ import annotations

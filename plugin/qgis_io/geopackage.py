@@ -121,7 +121,8 @@ def _create(path: Path, layer: Layer, wkt: str | None) -> None:
             raise refusal(gdal.GetLastErrorMsg())
         for name, column in layer.fields.items():
             table.CreateField(ogr.FieldDefn(name, _field_type(column)))
-        table = dataset = None  # closes the file
+        dataset.FlushCache()  # the file is another's from here on, even where a frame is kept
+        table = dataset = None
 
 
 def _insert(path: Path, layer: Layer) -> Iterator[int]:

@@ -69,11 +69,33 @@ def find_twins(start, stop, indptr, star, mesh):
     half_edges = np.arange(len(origin))
     head = origin[after(half_edges)]
     n = int(origin.max(initial=0)) + 1
-    key, mirrored = origin * n + head, head * n + origin
-    order = np.argsort(key, kind="stable")
-    place = np.searchsorted(key[order], mirrored)
+    # neighbours in this order are twins: no search, which takes four times as long on scattered ids
+    edge = np.minimum(origin, head) * n + np.maximum(origin, head)
+    order = np.argsort(edge, kind="stable")
+    sizes = np.diff(np.flatnonzero(np.diff(edge[order], prepend=-1, append=-1)))
+    first = np.cumsum(sizes) - sizes
+    mesh.twin[:] = -1
+    one, other = order[first[sizes == 2]], order[first[sizes == 2] + 1]
+    mesh.twin[one], mesh.twin[other] = other, one
+    # two of one direction, or more than two: what no manifold has
+    is_odd_one = np.repeat(sizes > 2, sizes)
+    alike = origin[one] == origin[other]
+    _find_some_twins(
+        np.sort(np.concatenate([order[is_odd_one], one[alike], other[alike]])),
+        origin * n + head,
+        head * n + origin,
+        mesh,
+    )
+
+
+def _find_some_twins(half_edges, key, mirrored, mesh):
+    """Find the twins of half-edges among themselves, the first where there are several."""
+    if len(half_edges) == 0:
+        return
+    order = half_edges[np.argsort(key[half_edges], kind="stable")]
+    place = np.searchsorted(key[order], mirrored[half_edges])
     twin = order[np.minimum(place, len(order) - 1)]
-    mesh.twin[:] = np.where(key[twin] == mirrored, twin, -1)
+    mesh.twin[half_edges] = np.where(key[twin] == mirrored[half_edges], twin, -1)
 
 
 def find_outgoing(start, stop, indptr, star, mesh, n_fans):

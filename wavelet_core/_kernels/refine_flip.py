@@ -15,7 +15,9 @@ from ._jit import inlined, kernel
 from .half_edges import after, before
 from .refine_tin import is_wide, weighed
 
-#: An edge is turned only where the error of its two faces falls by more than this part of it.
+#: An edge is turned only where the error of its two faces falls by more than this part of it,
+#: which keeps rounding from turning edges back and forth. From 0 to 0.01 the RMSE is the same to
+#: 0.3 % (benchmarks/quality/constants.py).
 LEAST_GAIN = 1e-6
 
 

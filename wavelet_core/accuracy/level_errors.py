@@ -113,14 +113,17 @@ def _merged_points(finest: TriangleMesh, points: FloatArray) -> FloatArray | Non
 def _from_analysis(
     pyramid: Pyramid, progress: Progress | None, merged: FloatArray, extent: FloatArray
 ) -> list[LevelErrors]:
-    """Return the errors that the analysis measured, and those of points that it did not have."""
+    """Return the errors that the analysis measured, and those of points that it did not have.
+
+    Of an analysis that knew points of a finer input (`wavelet_core.analyse`), these count too.
+    """
     assert pyramid.measured is not None
     scale = np.where(extent > 0, extent, 1.0)[2:]
-    n_points = pyramid.n_vertices(pyramid.n_levels) + len(merged)
     meshes = iter(pyramid) if len(merged) else repeat(None)
     rows = []
     for level, (figures, mesh) in enumerate(zip(pyramid.measured, meshes, strict=False)):
         squared, largest, n_uncovered = figures.squared_errors, figures.largest_error, 0
+        n_points = figures.n_points + len(merged)
         if mesh is not None:
             errors = surface_errors(mesh, merged)
             covered = errors[np.isfinite(errors)]

@@ -56,6 +56,7 @@ def analyse(
     removal_fraction: float | None = None,
     outline_tolerance: float = 0.0,
     integrals: ArrayLike | None = None,
+    points: ArrayLike | None = None,
     record: bool = False,
 ) -> Pyramid:
     """Return the reversible wavelet pyramid of a mesh (Algorithm 3).
@@ -122,6 +123,10 @@ def analyse(
         Of the scaling functions at the vertices, where the mesh is itself a level of a pyramid, or
         of several side by side; by default 1, as of an input. The pyramid keeps them
         (`Pyramid.part`), so that their sum with the coefficients stays what it was.
+    points : array_like, shape (n_points, 3 + n_attributes), optional
+        x, y, z and attributes of points of a finer input, of which the mesh is a level, with
+        ``partition="surface"`` and its own filters. Vertices then go by the errors at these, too,
+        as if the levels from the input to the mesh had been made in the same analysis.
     record : bool
         Keep the record by which a file describes the pyramid (:attr:`Pyramid.kept_record`), which
         takes half as much time again and is otherwise worked out when the file is written. Only
@@ -188,6 +193,7 @@ def analyse(
             _locked_mask(locked, mesh),
             progress,
             _begun_integrals(integrals, mesh),
+            _finer_points(points, mesh, options),
             record,
         ).run()
 
@@ -202,6 +208,7 @@ class _Analysis:
         locked: NDArray[np.bool_],
         progress: Progress | None,
         integrals: FloatArray | None,
+        points: FloatArray | None,
         is_recorded: bool,
     ) -> None:
         self._mesh = mesh
@@ -218,6 +225,7 @@ class _Analysis:
         self._horizontal = mesh.vertices[:, :2] if self._in_plan else None
         self._locked = locked
         self._begun = integrals
+        self._points = points
         self._integrals = np.ones(mesh.n_vertices) if integrals is None else integrals
         self._figures: tuple[LevelFigures, ...] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
@@ -304,6 +312,7 @@ class _Analysis:
             rules,
             self._report_size,
             self._begun,
+            self._points,
             self._recorder,
         )
         self._coefficients = result.coarse
@@ -460,6 +469,27 @@ def _begun_integrals(integrals: ArrayLike | None, mesh: TriangleMesh) -> FloatAr
             "integrals",
             shape=values.shape,
             n=mesh.n_vertices,
+        )
+    return values
+
+
+def _finer_points(
+    points: ArrayLike | None, mesh: TriangleMesh, options: AnalysisOptions
+) -> FloatArray | None:
+    if points is None:
+        return None
+    values = np.array(points, dtype=np.float64)
+    n_columns = 3 + mesh.attributes.shape[1]
+    if values.ndim != 2 or values.shape[1] != n_columns or not np.isfinite(values).all():
+        raise OptionError(
+            "{0} has shape {shape}; give {n_columns} finite numbers for each point.",
+            "points",
+            shape=values.shape,
+            n_columns=n_columns,
+        )
+    if not options.is_error_guided:
+        raise OptionError(
+            "{0} are for {1} 'surface' with its own filters; leave them out.", "points", "partition"
         )
     return values
 

@@ -39,6 +39,8 @@ from .._kernels.surface_points import (
 )
 from .._validate import FloatArray, frozen
 from ..mesh.half_edges import half_edges_of
+from ..mesh.location import cover_of
+from ..mesh.triangle_mesh import TriangleMesh
 from ._level_state import FaceState, VertexState
 from .outline import tolerant_outline
 from .questions import Collapses, Sight
@@ -80,7 +82,8 @@ class LevelFigures(NamedTuple):
     """Sizes and errors of a level.
 
     n_vertices, n_faces : int
-    squared_errors : float, sum of the squared height errors of all input vertices
+    n_points : int, input vertices, and points of a finer input if there are any
+    squared_errors : float, sum of the squared height errors of all of these
     largest_error : float, the largest of them
     squared_changes : (c,) float64, of each weighted column the sum of the squared differences of
         the level's vertices from the input
@@ -88,6 +91,7 @@ class LevelFigures(NamedTuple):
 
     n_vertices: int
     n_faces: int
+    n_points: int
     squared_errors: float
     largest_error: float
     squared_changes: FloatArray
@@ -126,7 +130,7 @@ class SurfaceLevel:
         with_update: bool,
         outline_tolerance: float = 0.0,
     ) -> None:
-        centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
+        self._centre = centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
         # about a local origin also vertically, so that sums of squares keep their digits
         self._z_origin = heights.min(axis=0) + np.ptp(heights, axis=0) / 2
         least_error = NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))
@@ -185,6 +189,45 @@ class SurfaceLevel:
         """Give the vertices of the input other integrals than 1."""
         self._vertices = self._vertices._replace(integrals=integrals.copy())
 
+    def begin_with_points(self, plan: FloatArray, heights: FloatArray) -> None:
+        """Let errors be measured at points of a finer input, too.
+
+        Those at the place of a vertex say what height the input has there; those that no face
+        covers are left out.
+
+        Parameters
+        ----------
+        plan : ndarray, shape (n_points, 2)
+        heights : ndarray, shape (n_points, n_channels)
+            z and the weighted attributes.
+        """
+        surface = self._surface
+        plan, heights = plan - self._centre, heights - self._z_origin
+        places = np.column_stack([surface.x, surface.y])
+        vertex = _rows_at(places, plan)
+        is_vertex = vertex >= 0
+        measured = surface.measured.copy()
+        measured[vertex[is_vertex]] = heights[is_vertex]
+        faces = self._mesh.origin.reshape(-1, 3)
+        flat = TriangleMesh(np.column_stack([places, np.zeros(len(places))]), faces)
+        plan, heights = plan[~is_vertex], heights[~is_vertex]
+        cover = cover_of(flat, plan)
+        order = np.argsort(cover.face, kind="stable")
+        rows, face = cover.point[order], cover.face[order]
+        counts = np.bincount(face, minlength=len(faces))
+        self._surface = surface._replace(measured=measured)
+        self._points = FacePoints(
+            _starts(counts)[:-1].astype(np.int32),
+            counts.astype(np.int32),
+            np.ascontiguousarray(plan[rows, 0]),
+            np.ascontiguousarray(plan[rows, 1]),
+            np.ascontiguousarray(heights[rows]),
+        )
+        self._n_used = len(rows)
+        self.n_input += len(rows)
+        self._faces.changed[:] = True
+        self._bring_sums_up_to_date()
+
     @property
     def ids(self) -> NDArray[np.int32]:
         """Ids, in the input, of the vertices of the level."""
@@ -240,6 +283,7 @@ class SurfaceLevel:
         return LevelFigures(
             self.n_vertices,
             int(np.count_nonzero(self._faces.lives)),
+            self.n_input,
             self.squared_errors(),
             self.largest_error(),
             (changes**2).sum(axis=0),
@@ -546,6 +590,16 @@ class SurfaceLevel:
             start=self._points.start.copy(), n_points=self._points.n_points.copy()
         )
         return twin
+
+
+def _rows_at(places: FloatArray, plan: FloatArray) -> NDArray[np.int64]:
+    """Return the row of the place that each position is, to the bit; -1 for none."""
+    keys, wanted = (np.ascontiguousarray(array).view("c16").ravel() for array in (places, plan))
+    order = np.argsort(keys, kind="stable")
+    at = np.minimum(np.searchsorted(keys[order], wanted), len(keys) - 1)
+    rows = order[at]
+    rows[keys[rows] != wanted] = -1
+    return rows
 
 
 def _starts(counts: NDArray) -> NDArray[np.int64]:

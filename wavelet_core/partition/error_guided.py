@@ -149,6 +149,7 @@ def analyse_surface(
     rules: SurfaceRules,
     report: Callable[[int], None],
     integrals: FloatArray | None = None,
+    points: FloatArray | None = None,
     recorder: Recorder | None = None,
 ) -> SurfaceAnalysis:
     """Return the coarse coefficients and the steps of a surface-guided analysis.
@@ -169,6 +170,8 @@ def analyse_surface(
         Called with the present number of vertices between the passes; may raise to stop.
     integrals : ndarray, shape (n_vertices,), optional
         Of the scaling functions of the input; by default 1.
+    points : ndarray, shape (n_points, 2 + n_channels), optional
+        Of a finer input, in input units; errors are measured at them, too.
     recorder : Recorder, optional
         Is given every step.
     """
@@ -178,6 +181,8 @@ def analyse_surface(
     del faces  # which nobody else may keep
     if integrals is not None:
         level.begin_with(integrals)
+    if points is not None:
+        level.begin_with_points(points[:, :2], points[:, 2:] * weights)
     steps: list[CollapseStep] = []
     figures = [level.figures()]
     n_flat = 0

@@ -2,7 +2,7 @@
 
 A tile is an ordinary pyramid of its cells, or of its points, with the vertices on the border that
 it shares with its neighbours locked, so that both keep them at every level. A group begins with
-the coarsest levels of its parts, put together vertex by vertex; the lines between them are free
+a coarse level of each of its parts, put together vertex by vertex; the lines between them are free
 now, those around the group are locked. The integrals of the scaling functions go on from the
 parts, so that their sum with the coefficients is that of the input at every level of the whole.
 """
@@ -42,7 +42,9 @@ __all__ = [
     "PIECES",
     "Joined",
     "cells_of",
+    "handed_on",
     "join",
+    "level_handed_on",
     "make_piece",
     "read_record",
     "sha256_of",
@@ -59,9 +61,16 @@ _EPOCH = "SOURCE_DATE_EPOCH"
 
 _BYTES_AT_ONCE = 1 << 22
 
+#: Points at which the errors of each level of a group of more than four tiles are measured.
+POINTS_MEASURED = 200_000
+
+#: Points of the input, in those of a tile, that a group knows besides its vertices. All that four
+#: tiles have take 150 bytes for each vertex that a group begins with, whose analysis takes 400.
+POINTS_OF_GROUP = 4.0
+
 #: What a record has, by its status; one that lacks it is damaged, and counts as none.
 _FIELDS: dict[str, dict[str, type]] = {
-    "whole": {"sha256": str, "n_bytes": int, "n_levels": int},
+    "whole": {"sha256": str, "n_bytes": int, "n_levels": int, "sizes": list},
     "loose": {"sha256": str, "n_bytes": int},
     "empty": {},
     "failed": {"stage": int, "row": int, "column": int, "reason": str},
@@ -101,7 +110,8 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
         Of the tile set, with its plan.
     piece : Piece
     inputs : dict of str to str
-        What it is made from, and a checksum or the like of each, for the record.
+        What it is made from, and a checksum or the like of each, for the record; of the parts of a
+        group also the level that it begins with, see `handed_on`.
 
     Notes
     -----
@@ -163,7 +173,7 @@ def read_record(folder: str | os.PathLike[str], piece: Piece) -> dict[str, Any] 
     path = Path(folder) / PIECES / f"{piece.name}.json"
     try:
         record = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     return record if holds_fields(record, _FIELDS) else None
 
@@ -229,11 +239,16 @@ def join(
     )
     # A cell that several pieces have was given the integral 1 in each, and counts once.
     counted = np.bincount(place, np.concatenate(integrals)) - (np.bincount(place) - 1.0)
-    rows, columns = np.divmod(unique, plan.shape[1])
+    vertices = np.column_stack([_in_frame(plan, unique), signal[first, 0]])
+    return Joined(vertices, faces, unique, counted, signal[first, 1:], meshes[0].attribute_names)
+
+
+def _in_frame(plan: TilePlan, cells: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return x and y of cells in the working frame, the same wherever they are asked for."""
+    rows, columns = np.divmod(cells, plan.shape[1])
     x, y = plan.places(rows, columns)
     frame = plan.local_frame
-    vertices = np.column_stack([frame.local_x(x), frame.local_y(y), signal[first, 0]])
-    return Joined(vertices, faces, unique, counted, signal[first, 1:], meshes[0].attribute_names)
+    return np.column_stack([frame.local_x(x), frame.local_y(y)])
 
 
 class _Made(NamedTuple):
@@ -278,8 +293,18 @@ def _tile(plan: TilePlan, piece: Piece) -> GeoPyramid | None:
         plan.local_frame,
         plan.vertical_unit,
     )
-    levels = plan.levels if plan.n_stages > 1 else None
-    return analyse(terrain, levels=levels, locked=locked, **plan.wavelets).geo
+    return analyse(terrain, locked=locked, **plan.options_of(piece, mesh.n_vertices)).geo
+
+
+def handed_on(checksum: str, level: int) -> str:
+    """Return what a group's record says of a part: its checksum, and the level it begins with."""
+    return f"{checksum}@{level}"
+
+
+def level_handed_on(text: str) -> int:
+    """Return the level that `handed_on` was given; tile sets of before began with the coarsest."""
+    level = text.partition("@")[2]
+    return int(level) if level.isdecimal() else 0
 
 
 def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) -> GeoPyramid | None:
@@ -287,26 +312,28 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
     from wavelet_gis.io.pyramid.pyramid_file import read_levels
 
     meshes, integrals = [], []
-    for name, checksum in inputs.items():
+    for name, text in inputs.items():
         path = Path(folder) / PIECES / f"{name}.gpkg"
-        if sha256_of(path) != checksum:
+        level = level_handed_on(text)
+        if handed_on(sha256_of(path), level) != text:
             raise InputFileError(f"{path}: this is not the file that was made; tile anew.")
-        pyramid = read_levels(path, 0).pyramid
-        meshes.append(pyramid.mesh(0))
-        integrals.append(pyramid.integrals(0))
+        pyramid = read_levels(path, level).pyramid
+        meshes.append(pyramid.mesh(level))
+        integrals.append(pyramid.integrals(level))
     if not meshes:
         return None
     whole = join(plan, meshes, integrals)
+    points, sample = _points_of(folder, plan, piece, whole.cells)
     rows, columns = np.divmod(whole.cells, plan.shape[1])
     locked = plan.is_shared(piece, rows, columns)
     if plan.points is not None:  # they are on no line, but on the outline near one
         locked &= ~_is_inside(whole.faces, len(whole.cells))
     pyramid = core_analyse(
         whole.mesh,
-        levels=None if piece.stage == plan.n_stages - 1 else plan.levels,
         locked=locked,
         integrals=whole.integrals,
-        **plan.wavelets,
+        points=points if plan.is_error_guided else None,
+        **plan.options_of(piece, len(whole.cells)),
     )
     geo = GeoPyramid(
         pyramid=pyramid,
@@ -316,7 +343,45 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
         origin=MeshOrigin(),
         source_name=piece.name,
     )
-    return geo.with_errors()
+    # With the points that the analysis knows, vertices are more than their part of a larger group.
+    is_all = plan.is_error_guided and piece.stage == 1
+    return geo.with_errors(points=None if is_all else sample)
+
+
+def _points_of(
+    folder: str, plan: TilePlan, piece: Piece, vertices: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the points of the input that a group knows, and x, y, z of those it is measured at.
+
+    It knows about as many as four tiles have: all of them in a group of four tiles, beyond that the
+    same part of each, in no order, and those that it has ``vertices`` at, by their cells. Errors
+    are measured at a part of them all, in no order either.
+    """
+    from wavelet_gis.io.pyramid.pyramid_file import read_input
+
+    share = POINTS_OF_GROUP / 4.0**piece.stage
+    found, cells = [], []
+    for tile in plan.tiles(piece):
+        record = read_record(folder, tile)
+        if record is None or record["status"] != "whole":
+            continue
+        mesh = read_input(Path(folder) / PIECES / f"{tile.name}.gpkg").pyramid.mesh(0)
+        of_tile = cells_of(plan, mesh)
+        is_taken = (_scattered(of_tile) < share) | np.isin(of_tile, vertices)
+        cells.append(of_tile[is_taken])
+        found.append(np.hstack([mesh.vertices[:, 2:], mesh.attributes])[is_taken])
+    unique, first = np.unique(np.concatenate(cells), return_index=True)  # two tiles have a border
+    points = np.hstack([_in_frame(plan, unique), np.concatenate(found)[first]])
+    order = _scattered(unique)
+    n_known = max(int(np.count_nonzero(order < share)), 1)
+    return points, points[order < share * min(POINTS_MEASURED / n_known, 1.0), :3]
+
+
+def _scattered(cells: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return a number in [0, 1) for each cell, without order: a Weyl sequence, mixed."""
+    key = cells.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    key ^= key >> np.uint64(32)
+    return (key * np.uint64(0xD6E8FEB86659FD93) >> np.uint64(11)) / 2.0**53
 
 
 def _is_inside(faces: NDArray[np.int64], n_vertices: int) -> NDArray[np.bool_]:
@@ -393,5 +458,10 @@ def _figures(geo: GeoPyramid) -> dict[str, Any]:
     }
     if errors is not None:
         figures |= {"rmse": errors.rmse_surface, "max_error": errors.max_error_surface}
+    figures["rmse_by_level"] = [
+        0.0 if row is None else float(np.nan_to_num(row.rmse_surface))
+        for row in map(geo.errors_at, range(len(pyramid)))
+    ]
+    figures["n_points"] = float(pyramid.integrals(pyramid.n_levels).sum())
     integral = float(pyramid.integrals(0) @ coarsest.vertices[:, 2])
     return {**figures, "integral": integral}

@@ -16,9 +16,17 @@ from wavelet_gis.io.read_back import write_text
 from wavelet_gis.io.scratch import sweep_own
 from wavelet_gis.notes import warn
 from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, stamp_of
-from wavelet_gis.tiles.cloud.plan import LEVELS_OF_POINTS, plan_of_clouds
+from wavelet_gis.tiles.cloud.plan import plan_of_clouds
+from wavelet_gis.tiles.handover import handover_levels
 from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
-from wavelet_gis.tiles.piece import LOOSE, PIECES, make_piece, read_record, sha256_of
+from wavelet_gis.tiles.piece import (
+    LOOSE,
+    PIECES,
+    handed_on,
+    make_piece,
+    read_record,
+    sha256_of,
+)
 from wavelet_gis.tiles.plan import LEVELS, PLAN, TILE, Piece, TilePlan, plan_of_rasters
 from wavelet_gis.tiles.runner import Job, records_of, require_dask
 
@@ -96,9 +104,10 @@ def tile_rasters(
     tile : int
         Cells along the side of a tile. Neighbours share a line of cells.
     levels : int
-        Of each tile, and of each group but the last.
+        The most of each tile, and of each group but the last. What they hand on is not the last of
+        them but the level at which a vertex costs the same error in all pieces.
     workers : int
-        Processes that make pieces; each needs some 600 bytes for a cell of a tile.
+        Processes that make pieces; each needs some 1,300 bytes for a cell of a tile.
     scheduler : str, optional
         Address of a Dask scheduler instead, whose workers see the same files.
     overwrite : bool
@@ -133,7 +142,7 @@ def tile_clouds(
     folder: str | os.PathLike[str],
     *,
     tile: float | tuple[float, float] | None = None,
-    levels: int = LEVELS_OF_POINTS,
+    levels: int = LEVELS,
     workers: int = 1,
     scheduler: str | None = None,
     overwrite: bool = False,
@@ -207,12 +216,13 @@ def run_plan(
     for stage in range(plan.n_stages):
         jobs: list[Job] = []
         needed: set[int] = set()
+        parts = _parts(place, plan, stage) if stage > 0 else {}
         for piece in plan.pieces(stage):
             if stage == 0:
                 files = (plan.files[number] for number in numbers[piece])
                 inputs = {file.path: stamp_of(file) for file in files}
             else:
-                inputs = _parts(place, plan, piece)
+                inputs = parts[piece]
             record = read_record(place, piece)
             if record is not None and _is_whole(place, checksum, piece, record, inputs):
                 n_found += 1
@@ -295,13 +305,21 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
     return folder
 
 
-def _parts(folder: Path, plan: TilePlan, piece: Piece) -> dict[str, str]:
-    """Return the pieces that a group is made from, with their checksums."""
-    records = {part: read_record(folder, part) for part in plan.parts(piece)}
+def _parts(folder: Path, plan: TilePlan, stage: int) -> dict[Piece, dict[str, str]]:
+    """Return what the groups of a stage are made from: pieces, checksums, levels to begin with."""
+    groups: dict[Piece, list[Piece]] = {}
+    records: dict[Piece, dict[str, Any]] = {}
+    for group in plan.pieces(stage):
+        groups[group] = []
+        for part in plan.parts(group):
+            record = read_record(folder, part)
+            if record is not None and record["status"] == "whole":
+                groups[group].append(part)
+                records[part] = record
+    levels = handover_levels(list(groups.values()), records)
     return {
-        part.name: record["sha256"]
-        for part, record in records.items()
-        if record is not None and record["status"] == "whole"
+        group: {part.name: handed_on(records[part]["sha256"], levels[part]) for part in parts}
+        for group, parts in groups.items()
     }
 
 

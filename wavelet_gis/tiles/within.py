@@ -2,9 +2,9 @@
 
 Of a tile set any pieces fit together that cover it once, whatever their stages and levels: the
 border of a group is locked at all its levels, and so is that of the tiles beside it. So each part
-of the terrain can be as coarse as the tolerance allows. A group tells its errors against what it
-begins with; what counts is the distance of the input's vertices, so these are read, tile by tile,
-and with them the points that were merged into one, whose errors are told too.
+of the terrain can be as coarse as the tolerance allows. The errors in a group's record are those at
+some of the input's points; what counts is the distance of all of them, so these are read, tile by
+tile, and with them the points that were merged into one.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ def _errors_within(
     from wavelet_gis.io.pyramid.pyramid_file import read_input
 
     found = []
-    for tile in _tiles_of(index, piece):
+    for tile in index.plan.tiles(piece):
         if index.records.get(tile, {}).get("status") != "whole" or not area.has_piece(tile):
             continue
         points = _points_of(index, tile, read_input(index.path(tile)))
@@ -187,11 +187,3 @@ def _counted(
     below = _errors_on(TriangleMesh(mesh.vertices[used], faces), points.places)
     counts = np.isfinite(below) | area.has_points(points.places)
     return PointErrors((points.heights + below)[counts], points.cells[counts])
-
-
-def _tiles_of(index: TileIndex, piece: Piece) -> Iterator[Piece]:
-    if piece.stage == 0:
-        yield piece
-        return
-    for part in index.plan.parts(piece):
-        yield from _tiles_of(index, part)

@@ -14,16 +14,18 @@ from wavelet_core.errors import OptionError
 from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import CoordinateSystem, Georeference, LocalFrame
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, EPT, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
 from wavelet_gis.io.las.cloud_reader import laspy_header, warn_of_crs
 from wavelet_gis.io.las.dimensions import HEIGHT_ABOVE_GROUND
+from wavelet_gis.io.las.ept import nodes_within, read_ept
 from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.points.aside import DUPLICATE_RULES
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import frame_of_bounds, require_plan
 from wavelet_gis.tiles.cloud.borders import FAR
 from wavelet_gis.tiles.plan import (
+    LEVELS,
     PointLattice,
     SourceFile,
     TilePlan,
@@ -31,11 +33,7 @@ from wavelet_gis.tiles.plan import (
     ends_of_tiles,
 )
 
-__all__ = ["LEVELS_OF_POINTS", "POINTS_IN_TILE", "plan_of_clouds", "shift_of"]
-
-#: Levels of a tile of points and of each group but the last: a level takes some 11 % of them, so a
-#: group of four begins with no more than a tile does, at any stage.
-LEVELS_OF_POINTS = 14
+__all__ = ["POINTS_IN_TILE", "plan_of_clouds", "shift_of"]
 
 #: Points of a tile where no size is given.
 POINTS_IN_TILE = 1_000_000
@@ -49,6 +47,8 @@ _REACH = 16
 #: Largest p and q of a ratio.
 _LARGEST_TERM = 64
 
+#: Steps from the first offset to a point, and from end to end: a cell of the whole, by rows and
+#: columns, is one int64.
 _LARGEST_SHIFT = np.iinfo(np.int32).max
 
 
@@ -56,7 +56,7 @@ def plan_of_clouds(
     data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     *,
     tile: float | tuple[float, float] | None = None,
-    levels: int = LEVELS_OF_POINTS,
+    levels: int = LEVELS,
     crs: str | None = None,
     vertical_unit: str | None = None,
     attributes: Sequence[str] = (),
@@ -76,7 +76,7 @@ def plan_of_clouds(
         Side of a tile, or its width and height, in the unit of x and y; by default such that a
         tile has about a million points.
     levels : int
-        Of each tile, and of each group but the last.
+        The most of each tile, and of each group but the last.
     crs, vertical_unit, attributes, classes, keep_noise, keep_withheld, duplicates
         See `wavelet_gis.open`. Heights above the ground are no attribute here.
     wavelets : dict, optional
@@ -105,7 +105,10 @@ def plan_of_clouds(
             "attributes",
         )
     wavelets = checked_wavelets(wavelets)
-    paths = [os.path.abspath(path) for path in files_of(data)]
+    given = files_of(data)
+    if os.path.basename(given[0]) == EPT and not given[1:]:
+        given = nodes_within(read_ept(given[0]))
+    paths = [os.path.abspath(path) for path in given]
     heads = _heads(paths)
     places = [head.place for head in heads]
     for path, one in zip(paths, places, strict=True):
@@ -295,10 +298,11 @@ def _extents(
         lows.append([low for low, _ in ends])
         highs.append([high for _, high in ends])
     low, high = np.array(lows), np.array(highs)
-    if max(-low.min(), high.max()) > _LARGEST_SHIFT:
+    longest = (high.max(axis=0) - low.min(axis=0)).max() + 1
+    if max(-low.min(), high.max(), longest) > _LARGEST_SHIFT:
         raise InputFileError(
             f"{joint_name(list(paths))}: the files lie too far from one another for coordinates "
-            f"in steps of {max(map(abs, first.scales)):g}; tile them in parts."
+            f"in steps of {max(map(abs, first.scales[:2])):g}; tile them in parts."
         )
     return low.astype(np.int64), high.astype(np.int64)
 

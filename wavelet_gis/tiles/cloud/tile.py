@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import struct
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -200,10 +200,7 @@ def tile_pyramid(plan: TilePlan, piece: Piece, tile: CloudTile) -> GeoPyramid | 
         frame,
         plan.vertical_unit,
     )
-    options: dict[str, Any] = dict(plan.wavelets)
-    if plan.n_stages > 1:
-        options |= {"levels": plan.levels, "locked": locked}
-    return analyse(terrain, **options).geo
+    return analyse(terrain, locked=locked, **plan.options_of(piece, len(vertices))).geo
 
 
 def tile_faces(
