@@ -60,7 +60,7 @@ def median_and_gaussian(noisy, sigma):
 
 
 def bilateral(noisy, sigma):
-    for width, strength in product((1.0, 1.5, 2.5), (1.5, 2.5, 4.0, 8.0)):
+    for width, strength in product((1.0, 1.5, 2.5, 4.0), (1.5, 2.5, 4.0, 8.0, 16.0)):
         reach = int(np.ceil(2 * width))
         padded = np.pad(noisy, reach, mode="reflect")
         total, weights = np.zeros_like(noisy), np.zeros_like(noisy)
