@@ -119,22 +119,46 @@ def _of_pages() -> int | None:
         return None
 
 
-def _of_group() -> int | None:
-    """Return what the control group of the process has left, as in a container."""
-    root = Path("/sys/fs/cgroup")
-    try:
-        own = Path("/proc/self/cgroup").read_text("utf-8").splitlines()[-1].partition("::")[2]
-    except (OSError, ValueError, IndexError):
-        own = ""
-    for folder in (root / own.strip("/"), root):  # inside a container the own one is the root
+def _of_group(root: Path = Path("/sys/fs/cgroup"), own: str | None = None) -> int | None:
+    """Return what the control groups of the process have left, as in a container.
+
+    Parameters
+    ----------
+    root : Path
+        Where version 2 of the groups is mounted.
+    own : str, optional
+        The process's own group, by default as the system says.
+    """
+    if own is None:
         try:
-            limit = (folder / "memory.max").read_text(encoding="ascii").strip()
-            used = (folder / "memory.current").read_text(encoding="ascii").strip()
-        except OSError:
-            continue
-        if limit.isdigit() and used.isdigit():
-            return max(int(limit) - int(used), 0)
-    return None
+            text = Path("/proc/self/cgroup").read_text("utf-8")
+            own = text.splitlines()[-1].partition("::")[2]
+        except (OSError, ValueError, IndexError):
+            own = ""
+    # A group has no more than those around it; inside a container the own one is the root.
+    parts = [part for part in own.split("/") if part]
+    folders = [root.joinpath(*parts[:n]) for n in range(len(parts) + 1)]
+    return min((left for left in map(_left_in, folders) if left is not None), default=None)
+
+
+def _left_in(folder: Path) -> int | None:
+    """Return what a control group has left; None where it has no limit.
+
+    Files that are cached count as used, and go as soon as a program needs the memory.
+    """
+    try:
+        limit = (folder / "memory.max").read_text(encoding="ascii").strip()
+        used = (folder / "memory.current").read_text(encoding="ascii").strip()
+    except OSError:
+        return None
+    if not (limit.isdigit() and used.isdigit()):
+        return None
+    try:
+        rows = (folder / "memory.stat").read_text(encoding="ascii").splitlines()
+    except OSError:
+        rows = []
+    cached = sum(int(row.split()[1]) for row in rows if row.startswith("inactive_file "))
+    return max(int(limit) - max(int(used) - cached, 0), 0)
 
 
 def _of_process() -> int | None:

@@ -158,7 +158,7 @@ def _keep(entry: Note) -> None:
     bare = {
         key: os.path.basename(value)
         for key in ("name", "path")
-        if isinstance(value := entry.figures.get(key), str)
+        if isinstance(value := entry.figures.get(key), str | os.PathLike)
     }
     entry = replace(entry, figures={**entry.figures, **bare})
     notes.append(entry)

@@ -38,3 +38,29 @@ def test_an_analysis_asks_first(monkeypatch, tif):
         with pytest.raises(InputFileError, match="takes some"):
             work()
     assert np.isfinite(terrain.mesh.vertices).all()
+
+
+def group(folder, limit, used, cached=0):
+    """Write what the system says of a control group."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "memory.max").write_text(f"{limit}\n")
+    (folder / "memory.current").write_text(f"{used}\n")
+    (folder / "memory.stat").write_text(f"anon 7\ninactive_file {cached}\nactive_file 5\n")
+
+
+def test_files_that_are_cached_are_no_memory_in_use(tmp_path):
+    """A container that had read large files had no memory left, and refused every large input."""
+    group(tmp_path, 8_000, 7_900, cached=6_000)
+    assert _memory._of_group(tmp_path, "/") == 6_100
+    (tmp_path / "memory.stat").unlink()
+    assert _memory._of_group(tmp_path, "/") == 100
+
+
+def test_a_group_has_no_more_than_those_around_it(tmp_path):
+    """Only its own limit counted, and that of the root."""
+    group(tmp_path / "user" / "job", "max", 300)
+    group(tmp_path / "user", 5_000, 1_000)
+    assert _memory._of_group(tmp_path, "/user/job") == 4_000
+    group(tmp_path / "user" / "job", 900, 300)
+    assert _memory._of_group(tmp_path, "/user/job") == 600
+    assert _memory._of_group(tmp_path / "none", "/user/job") is None

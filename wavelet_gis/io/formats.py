@@ -129,6 +129,9 @@ RASTER_SUFFIXES = tuple(row.suffix for row in RASTER_FORMATS)
 #: What is read and written with laspy.
 CLOUD_SUFFIXES = (".las", ".laz")
 
+#: The file by which a set of Entwine Point Tiles is named; its nodes are LAZ files.
+EPT = "ept.json"
+
 #: By these, rasters are found in a folder; those that are named may have any.
 FOLDER_RASTER_SUFFIXES = (".tif", ".tiff", ".vrt", ".img", ".asc", ".bil", ".flt", ".hgt", ".dem")
 
@@ -178,6 +181,17 @@ def suffix_of(path: str | os.PathLike[str]) -> str:
     ('.laz', '')
     """
     return os.path.splitext(os.fspath(path))[1].lower()
+
+
+def is_cloud(name: str | os.PathLike[str]) -> bool:
+    """Return whether a file's name is that of a point cloud.
+
+    Examples
+    --------
+    >>> is_cloud("tile.copc.laz"), is_cloud("set/ept.json"), is_cloud("points.json")
+    (True, True, False)
+    """
+    return suffix_of(name) in CLOUD_SUFFIXES or os.path.basename(name) == EPT
 
 
 def mesh_format(path: str | os.PathLike[str]) -> MeshFormat | None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.formats import (
     CLOUD_SUFFIXES,
+    EPT,
     FOLDER_RASTER_SUFFIXES,
     any_of,
     suffix_of,
@@ -77,7 +78,7 @@ def files_of(
     ----------
     data : path or sequence of path
         Each a file or a folder. In a folder, LAS and LAZ files count, or else rasters, by their
-        suffix and in the order of their names.
+        suffix and in the order of their names; one with an ``ept.json`` is that.
 
     Raises
     ------
@@ -89,7 +90,11 @@ def files_of(
         raise InputFileError("there is no input; name a file or a folder.")
     found: list[str] = []
     for name in (os.fspath(one) for one in given):
-        found += _in_folder(name) if os.path.isdir(name) else [name]
+        ept = os.path.join(name, EPT)
+        if os.path.isfile(ept):
+            found.append(ept)
+        else:
+            found += _in_folder(name) if os.path.isdir(name) else [name]
     seen: set[str] = set()
     for name in found if found[1:] else ():
         real = os.path.realpath(name)

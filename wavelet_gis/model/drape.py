@@ -134,6 +134,9 @@ class _Cutter:
         length = float(np.hypot(*along))
         for longest, ids, tree in self._classes:
             n_steps = max(int(np.ceil(length / longest)), 1)
+            if n_steps > len(ids):  # few edges, much shorter than the segment
+                yield ids
+                continue
             share = (np.arange(n_steps) + 0.5) / n_steps
             reach = (longest + length / n_steps) / 2 * (1 + _SAME)
             hits = tree.query_ball_point(start[:2] + share[:, None] * along, reach)

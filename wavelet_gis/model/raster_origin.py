@@ -28,6 +28,10 @@ from wavelet_gis.model.exact_restore import (
 
 __all__ = ["RasterOrigin"]
 
+#: Floats that differ from the nodata value by no more than this part of it are nodata to GDAL, four
+#: steps of single precision, whatever the precision of the raster.
+SAME_AS_NODATA = 5e-7
+
 #: Rows or columns; GDAL knows no larger rasters.
 _LARGEST_SIDE = 2**31 - 1
 
@@ -241,16 +245,19 @@ class RasterOrigin:
 
 
 def _avoiding_nodata(values: NDArray[Any], nodata: float | int | None) -> NDArray[Any]:
-    """Move elevations that fell on the nodata value to its neighbour, so they stay data."""
+    """Move elevations that fell on the nodata value away from it, so that they stay data."""
     if nodata is None or (isinstance(nodata, float) and math.isnan(nodata)):
+        return values
+    if values.dtype.kind == "f":
+        near = SAME_AS_NODATA * abs(nodata)
+        clash = np.abs(values - values.dtype.type(nodata)) <= near
+        smallest = float(np.finfo(values.dtype).smallest_subnormal)
+        values[clash] = nodata - math.copysign(2 * near, nodata) if nodata else smallest
         return values
     clash = values == nodata
     if clash.any():
         tag = values.dtype.type(nodata)
-        if values.dtype.kind == "f":
-            values[clash] = np.nextafter(tag, values.dtype.type(0))
-        else:
-            values[clash] = tag + 1 if tag < np.iinfo(values.dtype).max else tag - 1
+        values[clash] = tag + 1 if tag < np.iinfo(values.dtype).max else tag - 1
     return values
 
 

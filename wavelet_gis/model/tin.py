@@ -110,12 +110,13 @@ def tin_with_lines(
     of_lines = _with_heights(of_lines, points)
     is_marked = np.zeros(len(points), dtype=bool) if is_marked is None else is_marked
     splits = _on_segments(points, lines) & ~is_marked
+    # Where every point is on a line, the lines have the attributes of those that they stand for.
+    givers = splits if splits.all() else ~splits
+    nearest = cKDTree(points[givers, :2]).query(of_lines[:, :2])[1] if len(of_lines) else []
+    columns = np.concatenate([attributes[~splits], attributes[givers][nearest]])
     replaced, points = points[splits], points[~splits]
-    attributes, is_marked = attributes[~splits], is_marked[~splits]
-    n_points = len(points)
-    nearest = cKDTree(points[:, :2]).query(of_lines[:, :2])[1] if len(of_lines) else []
+    is_marked, n_points = is_marked[~splits], len(points)
     vertices = np.concatenate([points, of_lines])
-    columns = np.concatenate([attributes, attributes[nearest]])
     merged = _merged_by_line(vertices, n_points)
     edges = _edges_of(lines, n_points, merged.representative)
     part = np.repeat([0, 1, 2, 3], [n_points, n_own, n_rings, len(of_lines) - n_own - n_rings])

@@ -40,7 +40,7 @@ _LEVELS = [
     (170, 220, 50),
 ]
 
-#: Contours: their colour, and the width in millimetres of common ones and of those of the index.
+#: Contours: their colour, and the width in millimetres of common ones and of index contours.
 _CONTOUR, _CONTOUR_WIDTHS = "133,91,52,255", (0.15, 0.4)
 
 _HEADER = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"

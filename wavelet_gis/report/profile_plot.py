@@ -227,8 +227,7 @@ def _unit(profile: Profile) -> str:
 
 
 def _length_unit(profile: Profile) -> str:
-    return (
-        {1.0: "m", 0.3048: "ft"}.get(profile.geo.system.horizontal_unit, "")
-        if (profile.geo.system.kind == "projected")
-        else ""
-    )
+    system = profile.geo.system
+    if system.kind != "projected":
+        return ""
+    return {1.0: "m", 0.3048: "ft"}.get(system.horizontal_unit, "")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from wavelet_gis.errors import InputFileError, OutputFileError
 from wavelet_gis.io.atomic import new_file
 from wavelet_gis.io.geopackage import check_database, check_rows
+from wavelet_gis.io.names import plain_folder
 from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.model.dem import grid_bounds
 from wavelet_gis.tiles.piece import PIECES, level_handed_on, read_record
@@ -83,11 +86,14 @@ class TileIndex:
             stage += 1
         return stage, below
 
-    def level_of(self, piece: Piece, level: int) -> int:
-        """Return the level of the whole that a level of a piece is."""
-        coarser = sum(self.levels_of(k) for k in range(piece.stage + 1, self.plan.n_stages))
-        n_levels = int(self.records[piece]["n_levels"])
-        return coarser + self.levels_of(piece.stage) - (n_levels - level)
+    def levels_in_whole(self, levels: Sequence[tuple[Piece, int]]) -> list[int]:
+        """Return the levels of the whole that levels of pieces are."""
+        by_stage = [self.levels_of(stage) for stage in range(self.plan.n_stages)]
+        finest = [sum(by_stage[stage:]) for stage in range(self.plan.n_stages)]
+        return [
+            finest[piece.stage] - (int(self.records[piece]["n_levels"]) - level)
+            for piece, level in levels
+        ]
 
 
 def is_index(path: str | os.PathLike[str]) -> bool:
@@ -153,16 +159,18 @@ def write_index(index: TileIndex) -> None:
     geometry = np.array([_footprint(index.plan, piece) for piece in pieces], object)
     with new_file(index.folder / INDEX, overwrite=True) as scratch:
         try:
-            write(
-                os.fspath(scratch),
-                geometry,
-                list(fields.values()),
-                list(fields),
-                layer="tiles",
-                driver="GPKG",
-                geometry_type="Polygon",
-                crs=index.plan.coordinate_system.wkt,
-            )
+            with plain_folder(scratch) as name, warnings.catch_warnings():
+                warnings.filterwarnings("ignore", "'crs' was not provided")  # nor has the input one
+                write(
+                    name,
+                    geometry,
+                    list(fields.values()),
+                    list(fields),
+                    layer="tiles",
+                    driver="GPKG",
+                    geometry_type="Polygon",
+                    crs=index.plan.coordinate_system.wkt,
+                )
         except (DataSourceError, DataLayerError, FeatureError) as error:
             raise OutputFileError(
                 f"{index.folder / INDEX}: the index cannot be written, the pieces are there; "

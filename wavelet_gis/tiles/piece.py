@@ -70,7 +70,7 @@ POINTS_OF_GROUP = 4.0
 
 #: What a record has, by its status; one that lacks it is damaged, and counts as none.
 _FIELDS: dict[str, dict[str, type]] = {
-    "whole": {"sha256": str, "n_bytes": int, "n_levels": int},
+    "whole": {"sha256": str, "n_bytes": int, "n_levels": int, "sizes": list},
     "loose": {"sha256": str, "n_bytes": int},
     "empty": {},
     "failed": {"stage": int, "row": int, "column": int, "reason": str},
@@ -173,7 +173,7 @@ def read_record(folder: str | os.PathLike[str], piece: Piece) -> dict[str, Any] 
     path = Path(folder) / PIECES / f"{piece.name}.json"
     try:
         record = json.loads(path.read_text("utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     return record if holds_fields(record, _FIELDS) else None
 

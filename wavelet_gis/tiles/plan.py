@@ -341,7 +341,7 @@ class TilePlan:
                 vertical_unit=stored.text("vertical_unit"),
                 points=None if "points" not in raw else _lattice(stored.fields("points")),
             )
-        except (ValueError, KeyError, TypeError) as error:
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
             raise InputFileError(
                 f"{name}: this is no plan of tiles ({error}); tile the input anew."
             ) from error
@@ -436,10 +436,14 @@ def _grids_and_places(
     import rasterio
 
     from wavelet_gis.io.raster import CellWindow, read_dem
+    from wavelet_gis.io.raster.mosaic import require_alike
 
     grids, places = [], []
+    first = None
     for path in paths:
         head, place = read_dem(path, window=CellWindow(0, 0, 1, 1), **reading)
+        first = first or head
+        require_alike(paths[0], first, path, head)
         with rasterio.open(gdal_path(path)) as dataset:
             grids.append(GridGeometry(dataset.shape, head.geometry.transform))
         places.append(place)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
@@ -94,9 +95,7 @@ def extract_region(
         )
     area = area_of(plan, bbox, polygon)
     parts = (
-        _at_level(found, area, level or 0)
-        if max_error is None
-        else (_within(found, area, max_error))
+        _at_level(found, area, level or 0) if max_error is None else _within(found, area, max_error)
     )
     _warn_of_gaps(found, area, parts.stage)
     if not parts.meshes:
@@ -164,7 +163,7 @@ def _within(index: TileIndex, area: Area, max_error: float) -> _Parts:
         pieces,
         [one.mesh for one in chosen],
         _loaded(index, pieces[0], index.levels_of(pieces[0].stage)) if pieces else None,
-        max((index.level_of(one.piece, one.level) for one in chosen), default=0),
+        max(index.levels_in_whole([(one.piece, one.level) for one in chosen]), default=0),
         index.plan.n_stages - 1,
         errors,
     )
@@ -222,7 +221,7 @@ def _warn_of_gaps(index: TileIndex, area: Area, stage: int) -> None:
             "{row}, column {column}, and leave holes (tile again with the same options, which "
             "makes what is missing)",
             stacklevel=3,
-            path=index.folder,
+            path=str(index.folder),
             count=len(gone),
             **gone[0]._asdict(),
         )
@@ -230,12 +229,13 @@ def _warn_of_gaps(index: TileIndex, area: Area, stage: int) -> None:
 
 def _errors_of(parts: list[PointErrors], z_scale: float) -> SurfaceErrors:
     """Return the errors of all points in figures, those of several tiles counted once."""
-    errors, seen = [np.empty(0)], np.empty(0, dtype=np.int64)
-    for part in parts:
-        counts = ~np.isin(part.cells, seen)
-        errors.append(part.errors[counts])
-        seen = np.union1d(seen, part.cells[counts & (part.cells >= 0)])
-    return errors_in_figures(np.concatenate(errors) / z_scale)
+    errors = np.concatenate([np.empty(0), *(part.errors for part in parts)])
+    cells = np.concatenate([np.empty(0, np.int64), *(part.cells for part in parts)])
+    tile = np.repeat(np.arange(len(parts)), [len(part.cells) for part in parts])
+    _, first, place = np.unique(cells, return_index=True, return_inverse=True)
+    # A cell counts in the first tile that has it, with all the points that are merged there.
+    counts = (cells < 0) | (tile == tile[first][place.ravel()])
+    return errors_in_figures(errors[counts] / z_scale)
 
 
 def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:
@@ -263,6 +263,7 @@ def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:
             f"{found.folder}: these are tiles of point clouds, not of a raster; use restore_source."
         )
     values = valid = first = None
+    tags: list[tuple[tuple[slice, slice], float | int | None]] = []
     for piece in plan.pieces(0):
         status = found.records.get(piece, {}).get("status", "missing")
         if status == "empty":
@@ -281,18 +282,43 @@ def restored_raster(index: str | os.PathLike[str] | TileIndex) -> Dem:
         top, left, bottom, right = plan.cells(piece)
         window = (slice(top, bottom + 1), slice(left, right + 1))
         values[window], valid[window] = dem.values, dem.valid
+        tags.append((window, dem.nodata))
     if values is None or valid is None or first is None:
         raise InputFileError(f"{found.folder}: no tile has data.")
-    nodata = first.nodata
+    nodata = _with_one_nodata(str(found.folder), values, valid, tags)
+    if len(plan.files) == 1:  # which comes back with its own tag, if it has none, too
+        nodata = first.nodata
+    return replace(first, values=values, valid=valid, geometry=plan.geometry, nodata=nodata)
+
+
+def _with_one_nodata(
+    name: str,
+    values: NDArray[Any],
+    valid: NDArray[np.bool_],
+    tags: Sequence[tuple[tuple[slice, slice], float | int | None]],
+) -> float | int | None:
+    """Put one number for nodata into all that has no data; return it.
+
+    Files may have different ones, which stand in the holes of their tiles: the first that is there
+    holds for all, as in a mosaic. What stood in the holes of its own tiles stays.
+    """
+    from wavelet_gis.io.raster.mosaic import require_free
+
+    nodata = next((tag for _, tag in tags if tag is not None), None)
     if nodata is None and not valid.all() and values.dtype.kind == "f":
         nodata = float("nan")
-    if nodata is not None:
-        outside = np.ones(plan.shape, dtype=bool)
-        for piece in found.whole(0):
-            top, left, bottom, right = plan.cells(piece)
-            outside[top : bottom + 1, left : right + 1] = False
-        values[outside] = nodata
-    return replace(first, values=values, valid=valid, geometry=plan.geometry, nodata=nodata)
+    if nodata is None:
+        return None
+    others = [window for window, tag in tags if tag is not None and repr(tag) != repr(nodata)]
+    if others:
+        require_free(name, nodata, values[valid])
+    for window in others:
+        values[window][~valid[window]] = nodata
+    outside = np.ones(values.shape, dtype=bool)
+    for window, _ in tags:
+        outside[window] = False
+    values[outside] = nodata
+    return nodata
 
 
 def _level(index: TileIndex, piece: Piece, below: int) -> int:

@@ -7,12 +7,14 @@ inputs, and so is one that was half done: its files are written aside.
 
 from __future__ import annotations
 
+import logging
 import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from importlib.util import find_spec
 from itertools import islice
 from multiprocessing import get_context, parent_process
@@ -53,7 +55,7 @@ def records_of(
     Raises
     ------
     OutputFileError
-        Workers are lost again and again.
+        Workers are lost again and again, or the scheduler is.
     MissingDependencyError
         A scheduler is named and dask is not installed.
     """
@@ -125,8 +127,9 @@ def _end_with_the_program() -> None:
 
 
 def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:
-    from distributed import Client
+    from distributed import Client, KilledWorker
     from distributed import as_completed as done
+    from distributed.client import FutureCancelledError
 
     try:
         client = Client(scheduler, timeout="30s", set_as_default=False)
@@ -135,8 +138,34 @@ def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:
             f"{scheduler}: there is no Dask scheduler at this address ({error}); start one with "
             "'dask scheduler', and workers with 'dask worker'."
         ) from error
-    with client, client.as_current():
+    with _unlogged("distributed"), client, client.as_current():
         futures = [client.submit(job[0], *job[1], pure=False, retries=_MOST_LOSSES) for job in jobs]
-        for future in done(futures):
-            yield future.result()
-            future.release()
+        try:
+            for future in done(futures):
+                yield future.result()
+                future.release()
+        except FutureCancelledError as error:
+            raise OutputFileError(
+                f"{scheduler}: the Dask scheduler is gone; what was made is kept: start one again, "
+                "with workers, and the same command goes on from there."
+            ) from error
+        except KilledWorker as error:
+            raise OutputFileError(
+                f"{scheduler}: workers were lost again and again with one tile; give them more "
+                "memory, or tile anew with smaller tiles; what was made is kept."
+            ) from error
+
+
+@contextmanager
+def _unlogged(package: str) -> Iterator[None]:
+    """Leave out what a package logs in the block, tracebacks among it; we say it in one line."""
+    names = [name for name in logging.root.manager.loggerDict if name.startswith(package)]
+    loggers = [logging.getLogger(name) for name in names]
+    before = [logger.disabled for logger in loggers]
+    for logger in loggers:
+        logger.disabled = True
+    try:
+        yield
+    finally:
+        for logger, was in zip(loggers, before, strict=True):
+            logger.disabled = was

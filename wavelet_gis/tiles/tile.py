@@ -107,7 +107,7 @@ def tile_rasters(
         The most of each tile, and of each group but the last. What they hand on is not the last of
         them but the level at which a vertex costs the same error in all pieces.
     workers : int
-        Processes that make pieces; each needs some 600 bytes for a cell of a tile.
+        Processes that make pieces; each needs some 1,300 bytes for a cell of a tile.
     scheduler : str, optional
         Address of a Dask scheduler instead, whose workers see the same files.
     overwrite : bool

@@ -9,10 +9,10 @@ from typing import Any
 from wavelet_gis.crs.frame import MAX_DISTORTION
 from wavelet_gis.errors import CrsWarning, InputFileError
 from wavelet_gis.io.formats import (
-    CLOUD_SUFFIXES,
     POINT_TABLE_SUFFIXES,
     PYRAMID_SUFFIX,
     VECTOR_SUFFIXES,
+    is_cloud,
     suffix_of,
 )
 from wavelet_gis.io.names import files_of, joint_name
@@ -56,7 +56,8 @@ def open_data(
     Parameters
     ----------
     data : path, sequence of path, or object
-        A raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or in a table
+        A raster that GDAL reads; a LAS, LAZ or COPC file; the ``ept.json`` of
+        Entwine Point Tiles, or its folder; points in a vector layer or in a table
         (``.csv``, ``.xyz``); a TIN as a layer of triangles; a pyramid file. Or an open rasterio
         dataset, an xarray DataArray, a GeoDataFrame, a `TriangleMesh`, a `Dem`.
         Several rasters of one grid, or LAS files of one kind, or a folder of such, are one terrain:
@@ -205,9 +206,10 @@ def _terrain_of_file(
             "layer",
             path=path,
         )
-    if suffix in (*VECTOR_SUFFIXES, *POINT_TABLE_SUFFIXES) and os.path.isfile(path):
+    kind = CLOUD if is_cloud(path) else RASTER
+    is_open = kind == RASTER and suffix in (*VECTOR_SUFFIXES, *POINT_TABLE_SUFFIXES)
+    if is_open and os.path.isfile(path):
         return terrain_of_raster_or_vector(path, layer, z_field, options, shapes)
-    kind = CLOUD if suffix in CLOUD_SUFFIXES else RASTER
     require_meaning(path, kind, {"layer": layer, "z_field": z_field})
     return open_terrain(path, **options)
 

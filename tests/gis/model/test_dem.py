@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import rasterio
 from gis.samples import hills
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,6 +13,7 @@ from wavelet_core.errors import PyramidError
 from wavelet_gis.crs.frame import LocalFrame, working_frame
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.errors import InputFileError
+from wavelet_gis.io.raster import write_dem
 from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh, grid_bounds
 from wavelet_gis.model.raster_origin import RasterOrigin
 
@@ -129,6 +131,20 @@ def test_an_altered_pyramid_gives_altered_cells_that_stay_data():
     expected = values + 1
     expected[expected == dem.nodata] += 1  # never the nodata value by accident
     assert (back.values == expected).all()
+
+
+@pytest.mark.parametrize("tag", [0.0, 300.0, -9999.0])
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_altered_cells_near_the_nodata_value_stay_data_to_gdal(tmp_path, tag, dtype):
+    """0 stayed 0 where that is nodata, and to GDAL the next few floats are the nodata value too."""
+    source = RasterOrigin.from_dem(dem_of(hills().astype(dtype), nodata=tag)).altered()
+    near = tag + np.array([0.0, 1e-9, -1e-7, 4e-7]) * tag
+    mesh = dem_mesh(dem_of(np.resize(near, (40, 50))), LocalFrame())
+    back = source.restore(mesh, LocalFrame())
+    write_dem(tmp_path / "back.tif", back, None)
+    with rasterio.open(tmp_path / "back.tif") as dataset:
+        assert dataset.read_masks(1).all()
+    assert np.abs(back.values - tag).max() <= 2e-6 * abs(tag) + 1e-40
 
 
 def test_another_mesh_is_no_original():

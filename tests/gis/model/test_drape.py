@@ -81,3 +81,19 @@ def test_a_corner_beyond_the_terrain_has_the_height_of_the_nearest_vertex(hills)
     nearest = np.hypot(*(hills.vertices[:, :2] + 50).T).argmin()
     assert line[0, 2] == hills.vertices[nearest, 2]
     assert np.isfinite(line).all()
+
+
+def test_one_short_edge_does_not_cut_a_long_line_into_steps_of_its_length():
+    """Two points a nanometre apart, and ten kilometres of line asked for 95 TiB."""
+    corners = [
+        [0, 0, 0],
+        [1e4, 0, 1],
+        [1e4, 1e4, 2],
+        [0, 1e4, 3],
+        [5e3, 5e3, 4],
+        [5e3 + 1e-9, 5e3, 4],
+    ]
+    mesh = TriangleMesh.from_points(np.array(corners))
+    draped = drape([np.array([[10, 20, np.nan], [9e3, 9.5e3, np.nan]])], mesh, 0.0)
+    assert 3 <= len(draped.profile) <= 6
+    assert np.abs(surface_errors(mesh, draped.profile)).max() < 1e-9

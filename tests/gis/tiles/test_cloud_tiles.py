@@ -430,6 +430,18 @@ def test_refusals(cloud, parts, tmp_path):
     assert open_index(tmp_path / "t").plan.points is not None
 
 
+def test_clouds_too_far_apart_to_count_the_steps_between_are_refused(tmp_path):
+    """Each was within 32 bits of the offset; the plan of both was one that no tile could read."""
+    paths = [write_las(tmp_path / f"{k}.las", 3000) for k in range(2)]
+    for path, x in zip(paths, (-2_000_000_000, 2_000_000_000), strict=True):
+        las = laspy.read(path)
+        las.X = las.X - las.X.min() + x
+        las.write(path)
+    with pytest.raises(InputFileError, match="the files lie too far from one another"):
+        wg.tile_clouds(paths, tmp_path / "t", tile=100_000)
+    assert not (tmp_path / "t").exists()
+
+
 def test_a_tolerance_is_kept_at_every_vertex_by_pieces_of_all_stages(tiled):
     index = tiled.index
     finest = wg.extract_region(index, level=index.n_levels).surface.mesh

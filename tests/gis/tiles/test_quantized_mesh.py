@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from gis.samples import hills, write_las, write_tif
 from pyproj import Transformer
+from rasterio import Affine
 from tools.quantized_mesh_reader import STEPS, bounds_of, decode
 
 import wavelet_gis as wg
@@ -407,3 +408,22 @@ def test_refusals(tmp_path):
     wg.terrain_tiles(dem, tmp_path / "out", zoom=12, max_error=2.0, overwrite=True)
     assert max(int(p.name) for p in Path(tmp_path / "out").iterdir() if p.is_dir()) == 12
     assert sorted(p.name for p in tmp_path.iterdir() if p.name.startswith(".")) == []
+
+
+def test_heights_of_many_digits_are_stored_in_steps_that_single_precision_counts(tmp_path):
+    """Steps of a millimetre at 20 km: the heights had more digits than the format holds."""
+    path = write_tif(tmp_path / "high.tif", hills(20, 20) / 20 + 19_990.0)
+    figures = wg.terrain_tiles(wg.open(path), tmp_path / "out", fill=20_000.7)
+    assert all(zoom.max_error <= zoom.promised for zoom in figures.zooms)
+    assert figures.height_step == 2.0**-9
+    decoded = read_set(tmp_path / "out")[1]
+    assert len(decoded) == figures.figures()["n_tiles"]
+
+
+def test_more_tiles_than_anybody_waits_for_are_refused(tmp_path):
+    """The finest zooms of a wide terrain took all memory for tiles without a point."""
+    place = (1000.0, 0.0, 500000.0, 0.0, -1000.0, 5100000.0)
+    path = write_tif(tmp_path / "wide.tif", hills(20, 20), transform=Affine(*place))
+    with pytest.raises(OptionError, match=r"zooms up to 22 there are [\d,]+ tiles .* smaller zoom"):
+        wg.terrain_tiles(wg.open(path), tmp_path / "out", zoom=22)
+    assert not (tmp_path / "out").exists()

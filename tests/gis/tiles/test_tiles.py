@@ -3,7 +3,9 @@
 import contextlib
 import importlib.util
 import json
+import os
 import random
+import socket
 import subprocess
 import sys
 import time
@@ -468,6 +470,54 @@ def test_a_dask_cluster_gives_the_bytes_of_one_process(dem, tiled, tmp_path):
             dem, tmp_path / "t", tile=SIZE, levels=4, scheduler=cluster.scheduler_address
         )
     assert checksums(tmp_path / "t") == checksums(tiled.index.folder)
+
+
+@contextlib.contextmanager
+def dask_at(port, folder):
+    """Run a scheduler and two workers as processes of their own; yield the scheduler's."""
+    address = f"tcp://127.0.0.1:{port}"
+    options = ("--no-dashboard",)
+    commands = [["dask_scheduler", "--host", "127.0.0.1", "--port", str(port), *options]]
+    worker = ["dask_worker", address, "--nthreads", "1", "--no-nanny", "--local-directory", folder]
+    commands += [[*worker, *options]] * 2
+    with contextlib.ExitStack() as stack:
+        processes = []
+        for name, *arguments in commands:
+            command = [sys.executable, "-m", f"distributed.cli.{name}", *map(str, arguments)]
+            process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+            stack.callback(process.wait)
+            stack.callback(process.kill)
+            processes.append(process)
+        yield processes[0]
+
+
+def test_a_scheduler_that_is_killed_costs_what_is_in_flight(tmp_path):
+    pytest.importorskip("distributed")
+    dem = write_tif(tmp_path / "dem.tif", hills(120, 120))
+    once = wg.tile_rasters(dem, tmp_path / "once", tile=20, levels=4)
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    address, out = f"tcp://127.0.0.1:{port}", tmp_path / "t"
+    command = [sys.executable, "-m", "wavelet_gis.cli", "tile", dem, out, "--tile", 20]
+    command = [*map(str, command), "--levels", "4", "--quiet", "--scheduler", address]
+
+    def n_made():
+        return sum(name.endswith(".json") for _, _, names in os.walk(out) for name in names)
+
+    with dask_at(port, tmp_path) as scheduler:
+        program = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        while n_made() < 3:
+            assert program.poll() is None
+            time.sleep(0.02)
+        scheduler.kill()
+        _, said = program.communicate(timeout=120)
+    assert program.returncode == 1
+    assert said.count("\n") == 1
+    assert "the Dask scheduler is gone; what was made is kept" in said
+    with dask_at(port, tmp_path):
+        subprocess.run(command, check=True, timeout=300)
+    assert checksums(out) == checksums(once.index.folder)
 
 
 def test_records_are_plain_json(tiled):

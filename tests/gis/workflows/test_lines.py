@@ -13,6 +13,7 @@ from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_gis.cli.main import main
 from wavelet_gis.errors import CrsWarning, InputFileError, LayerWarning
+from wavelet_gis.model.tin import tin_with_lines
 
 X, Y = 500000.0, 5100000.0
 #: The middle of the DEM of 40 rows and 50 columns at 10 m: x from X + 5 to X + 495.
@@ -374,3 +375,19 @@ def test_an_output_that_is_the_line_file_is_refused(dem, dike, capsys):
     words = ["simplify", dem, dike, "--breaklines", dike, "--vertices", "300", "--overwrite"]
     assert main([str(word) for word in words]) == 1
     assert dike.read_bytes() == before
+
+
+def test_points_that_are_all_on_the_clip_polygon_leave_its_corners(tmp_path):
+    """The corners asked for the attributes of the nearest point inside, and there was none."""
+    points = [(X + 1, Y, 5.0), (X + 2, Y + 1, 6.0), (X, Y + 1, 7.0), (X + 1, Y + 2, 8.0)]
+    write_shapes(tmp_path / "points.gpkg", [shapely.Point(*p) for p in points], "Point Z")
+    inside = shapely.Polygon([(X + 1, Y), (X + 2, Y + 1), (X + 1, Y + 2), (X, Y + 1)])
+    write_shapes(tmp_path / "clip.gpkg", [inside], "Polygon")
+    terrain = wg.open(tmp_path / "points.gpkg", clip=tmp_path / "clip.gpkg")
+    assert (terrain.mesh.n_vertices, terrain.mesh.n_faces) == (4, 2)
+    ring = np.array([[-1, -1, 0], [3, -1, 0], [3, 3, 0], [-1, 3, 0], [-1, -1, 0]], dtype=float)
+    on_it = np.array([[1, -1, 5], [3, 1, 6], [1, 3, 7]], dtype=float)
+    tin = tin_with_lines(on_it, np.array([[1.0], [2.0], [3.0]]), ["class"], outline=[ring])
+    assert tin.mesh.n_vertices == 4
+    assert set(tin.mesh.attributes.ravel()) <= {1.0, 2.0, 3.0}
+    assert len(tin.replaced) == 3

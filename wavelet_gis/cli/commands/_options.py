@@ -43,8 +43,8 @@ __all__ = [
 
 #: What can be analysed, for help.
 INPUTS = (
-    "a raster that GDAL reads; a LAS, LAZ or COPC file; points in a vector layer or a table (.csv, "
-    ".xyz); a TIN as a layer of triangles"
+    "a raster that GDAL reads; a LAS, LAZ or COPC file or an ept.json; points in a vector layer or "
+    "a table (.csv, .xyz); a TIN as a layer of triangles"
 )
 
 
@@ -188,7 +188,7 @@ def add_input_arguments(parser: argparse.ArgumentParser) -> None:
         "--resolution",
         type=length,
         metavar="D",
-        help="of a COPC file only the levels that have points so far apart",
+        help="of a COPC file or an ept.json only the levels that have points so far apart",
     )
     group.add_argument("--layer", metavar="NAME", help="of a vector file of points or triangles")
     group.add_argument(

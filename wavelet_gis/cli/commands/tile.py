@@ -31,8 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "input",
         nargs="+",
-        help="a raster, several of one grid, or LAS, LAZ or COPC files of one point format; or a "
-        "folder of them",
+        help="a raster, several of one grid, or LAS, LAZ or COPC files of one point format, or an "
+        "ept.json; or a folder of them",
     )
     parser.add_argument(
         "output", help="a folder to be made, or that of an earlier run, which goes on from there"
@@ -70,28 +70,28 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
-    from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
+    from wavelet_gis.io.formats import is_cloud
     from wavelet_gis.io.names import files_of, joint_name
     from wavelet_gis.tiles.index import INDEX
     from wavelet_gis.tiles.tile import tile_clouds, tile_rasters
     from wavelet_gis.workflows.opening.input_options import CLOUD, RASTER, require_meaning
 
     files = files_of(arguments.input)
-    is_cloud = suffix_of(files[0]) in CLOUD_SUFFIXES
+    of_points = is_cloud(files[0])
     given = {name: getattr(arguments, name) for name in (*_OF_RASTERS, *_OF_CLOUDS)}
-    require_meaning(joint_name(files), CLOUD if is_cloud else RASTER, given)
-    options = {name: given[name] for name in (_OF_CLOUDS if is_cloud else _OF_RASTERS)}
+    require_meaning(joint_name(files), CLOUD if of_points else RASTER, given)
+    options = {name: given[name] for name in (_OF_CLOUDS if of_points else _OF_RASTERS)}
     if arguments.levels is not None:
         options["levels"] = arguments.levels
     if arguments.tile is not None:
-        options["tile"] = arguments.tile if is_cloud else _cells(arguments.tile)
+        options["tile"] = arguments.tile if of_points else _cells(arguments.tile)
     began = perf_counter()
     with console.progress("tiling") as progress:
 
         def on_piece(record: dict[str, Any], n_done: int, n_total: int) -> None:
             progress(n_done / n_total)
 
-        tiled = (tile_clouds if is_cloud else tile_rasters)(
+        tiled = (tile_clouds if of_points else tile_rasters)(
             files,
             arguments.output,
             workers=arguments.workers,
@@ -103,7 +103,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             **options,
         )
     figures = {**tiled.figures(), "seconds": round(perf_counter() - began, 3)}
-    if is_cloud:
+    if of_points:
         n_files = figures["n_files"]
         size = f"{figures['n_points']:,} points of {n_files:,} file{'s' * (n_files != 1)}"
     else:

@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "NOISE_CLASSES",
+    "NoneChosenError",
     "decoding",
     "laspy_header",
     "laz_job",
@@ -59,6 +60,10 @@ Box = tuple[float, float, float, float]
 
 #: Point formats with references to waveform packets.
 _WAVEFORM_FORMATS = (4, 5, 9, 10)
+
+
+class NoneChosenError(InputFileError):
+    """A file without a point of the chosen classes, or in the box."""
 
 
 def read_cloud(
@@ -263,7 +268,7 @@ def _inside(
     )
     inside = (x >= bbox[0]) & (x <= bbox[2]) & (y >= bbox[1]) & (y <= bbox[3])
     if not inside.any():
-        raise InputFileError(
+        raise NoneChosenError(
             "{name}: there are no points in the box; x runs from {x_low:g} to {x_high:g}, y from "
             "{y_low:g} to {y_high:g}, give another {0}.",
             "bbox",
@@ -460,7 +465,7 @@ def _chosen(
     chosen: NDArray[np.bool_] = np.isin(of_point, list(classes))
     if not chosen.any():
         present = ", ".join(str(c) for c in np.unique(of_point))
-        raise InputFileError(
+        raise NoneChosenError(
             f"{name}: no point has class {', '.join(map(str, classes))}; the classes in the file "
             f"are {present}."
         )

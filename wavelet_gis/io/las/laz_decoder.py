@@ -387,7 +387,7 @@ def _what_happened(said: bytes, is_late: bool) -> str:
     return (
         "it makes the decoder ask for too much memory"
         if "alloc" in text
-        else ("the decoder gives up")
+        else "the decoder gives up"
     )
 
 

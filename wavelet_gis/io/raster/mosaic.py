@@ -14,7 +14,7 @@ from wavelet_gis.errors import InputFileError, RasterWarning
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.notes import note, warn
 
-__all__ = ["first_cell", "mosaic"]
+__all__ = ["first_cell", "mosaic", "require_alike", "require_free"]
 
 #: How far cells of two files may be apart that are to be the same, in parts of a cell.
 _SAME_CELL = 1e-3
@@ -40,7 +40,7 @@ def mosaic(names: Sequence[str], dems: Sequence[Dem]) -> Dem:
     """
     first = dems[0]
     for name, dem in zip(names[1:], dems[1:], strict=True):
-        _require_alike(names[0], first, name, dem)
+        require_alike(names[0], first, name, dem)
     corners = np.array(
         [
             first_cell(names[0], first.geometry, name, dem.geometry)
@@ -99,7 +99,20 @@ def mosaic(names: Sequence[str], dems: Sequence[Dem]) -> Dem:
     )
 
 
-def _require_alike(name: str, first: Dem, other_name: str, other: Dem) -> None:
+def require_alike(name: str, first: Dem, other_name: str, other: Dem) -> None:
+    """Refuse a raster whose numbers mean something else than those of the first.
+
+    Parameters
+    ----------
+    name, other_name : str
+        For the message.
+    first, other : Dem
+
+    Raises
+    ------
+    InputFileError
+        They are of another type, or have another scale or offset.
+    """
     pairs = (
         ("numbers of type", first.values.dtype.name, other.values.dtype.name),
         ("the scale", first.scale, other.scale),
@@ -169,10 +182,29 @@ def _filled(
                 "stands for nodata; set one first (gdal_edit.py -a_nodata)."
             )
         nodata = float("nan")
-    if (values[valid] == nodata).any():
+    require_free(name, nodata, values[valid])
+    values[~valid] = nodata
+    return nodata
+
+
+def require_free(name: str, nodata: float | int, elevations: NDArray[Any]) -> None:
+    """Refuse a number for nodata that is an elevation as well.
+
+    Parameters
+    ----------
+    name : str
+        Of the file that it comes from.
+    nodata : float or int
+    elevations : array
+        As stored.
+
+    Raises
+    ------
+    InputFileError
+        With the remedy.
+    """
+    if (elevations == nodata).any():
         raise InputFileError(
             f"{name}: its nodata value {nodata} is an elevation in another of the files; make them "
             "alike first (gdalwarp -dstnodata)."
         )
-    values[~valid] = nodata
-    return nodata

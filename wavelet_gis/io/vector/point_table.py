@@ -21,6 +21,10 @@ _COORDINATES = {
 }
 
 
+#: Characters of a line that are looked at for names.
+_LONGEST_LINE = 10_000
+
+
 class PointTable(NamedTuple):
     """The points of a table.
 
@@ -41,7 +45,8 @@ def read_point_table(path: str | os.PathLike[str], attributes: tuple[str, ...] =
     ----------
     path : path
         Columns are apart by commas, semicolons, tabs or blanks. A first line of names says which
-        they are; without one the first three are x, y and z.
+        they are; without one the first three are x, y and z. Lines that begin with ``#`` are
+        comments, of which one with a name for each column does as well.
     attributes : tuple of str
         Names of the columns to keep beside x, y and z.
 
@@ -52,24 +57,25 @@ def read_point_table(path: str | os.PathLike[str], attributes: tuple[str, ...] =
     """
     name = os.fspath(path)
     try:
-        with Path(path).open(encoding="utf-8-sig") as stream:
-            first = stream.readline(10_000)
+        heading, first = _head(path)
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not text"
         raise InputFileError(f"{name}: the table cannot be read ({reason}).") from error
-    separator = next((mark for mark in (",", ";", "\t") if mark in first), None)
-    words = [word.strip().strip('"') for word in first.strip().split(separator)]
+    words = _words(first)
     has_names = not all(map(_is_number, words))
-    columns = _columns(name, words if has_names else [], attributes)
+    if not has_names and len(heading) == len(words):
+        columns = _columns(name, heading, attributes)
+    else:
+        columns = _columns(name, words if has_names else [], attributes)
     try:
         with Path(path).open(encoding="utf-8-sig") as stream:
             # Only whole lines are comments: a damaged "301.#94" is no 301.
             lines = (line for line in stream if not line.lstrip().startswith("#"))
             values = np.loadtxt(
                 lines,
-                delimiter=separator,
+                delimiter=_separator(first),
                 comments=None,
-                skiprows=int(has_names and not first.lstrip().startswith("#")),
+                skiprows=int(has_names),
                 usecols=columns,
                 ndmin=2,
             )
@@ -79,6 +85,28 @@ def read_point_table(path: str | os.PathLike[str], attributes: tuple[str, ...] =
             "line."
         ) from error
     return PointTable(values[:, :3], values[:, 3:], attributes)
+
+
+def _head(path: str | os.PathLike[str]) -> tuple[list[str], str]:
+    """Return the names in the first comment that has x, y and z, and the first other line."""
+    heading: list[str] = []
+    with Path(path).open(encoding="utf-8-sig") as stream:
+        for line in iter(lambda: stream.readline(_LONGEST_LINE), ""):
+            if not line.lstrip().startswith("#"):
+                return heading, line
+            words = _words(line.lstrip().lstrip("#"))
+            lowered = {word.lower() for word in words}
+            if not heading and all(lowered.intersection(own) for own in _COORDINATES.values()):
+                heading = words
+    return heading, ""
+
+
+def _separator(line: str) -> str | None:
+    return next((mark for mark in (",", ";", "\t") if mark in line), None)
+
+
+def _words(line: str) -> list[str]:
+    return [word.strip().strip('"') for word in line.strip().split(_separator(line))]
 
 
 def _columns(name: str, names: list[str], attributes: tuple[str, ...]) -> list[int]:

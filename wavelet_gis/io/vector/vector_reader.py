@@ -165,7 +165,7 @@ def vector_terrain(
     Raises
     ------
     InputFileError
-        Lines, polygons that are no triangles, no elevation, or no such field.
+        Lines, polygons that are no triangles, no elevation, no such field, or one without numbers.
     """
     import shapely
 
@@ -179,14 +179,14 @@ def vector_terrain(
         points, owner = shapely.get_coordinates(shapes, include_z=True, return_index=True)
         rows = np.flatnonzero(filled)[owner]
         if z_field is not None:
-            points[:, 2] = np.asarray(table[z_field], dtype=np.float64)[rows]
+            points[:, 2] = _numbers(name, table, z_field, "z_field")[rows]
         elif np.isnan(points[:, 2]).all():
             raise InputFileError(
                 "{name}: the points have no z; name the field with the elevation by {0}.",
                 "z_field",
                 name=name,
             )
-        columns = [np.asarray(table[field], dtype=np.float64)[rows] for field in attributes]
+        columns = [_numbers(name, table, field, "attributes")[rows] for field in attributes]
         values = np.column_stack(columns) if columns else np.empty((len(points), 0))
         return VectorTerrain(points, values, attributes, None, wkt)
     if kinds and kinds <= _POLYGONS:
@@ -194,6 +194,19 @@ def vector_terrain(
     raise InputFileError(
         f"{name}: the layer holds neither points nor triangles; a terrain is made of these."
     )
+
+
+def _numbers(name: str, table: Any, field: str, option: str) -> NDArray[np.float64]:
+    """Return the numbers of a field."""
+    try:
+        return np.asarray(table[field], dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputFileError(
+            "{name}: field {field!r} does not hold numbers; name another with {0}.",
+            option,
+            name=name,
+            field=field,
+        ) from error
 
 
 def _corners(name: str, shapes: NDArray[Any]) -> NDArray[np.float64]:

@@ -98,7 +98,7 @@ def source_record(folder: str | os.PathLike[str], number: int) -> dict[str, Any]
     """Return the record of an input's cut; None where there is none that can be read."""
     try:
         record = json.loads((Path(folder) / SOURCES / f"{number:05d}.json").read_text("utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
     return record if holds_fields(record, _FIELDS) else None
 
@@ -316,7 +316,6 @@ def _moved(plan: TilePlan, number: int, stored: NDArray[np.int32], shift: int) -
 
 
 def record_dtype(folder: str | os.PathLike[str], number: int) -> np.dtype[Any]:
-    """Return the dtype of the records of an input that was cut."""
     """Return the dtype of the records of an input that was cut."""
     path = Path(folder) / SOURCES / f"{number:05d}.head"
     layout = parse_layout(str(path), path.read_bytes())

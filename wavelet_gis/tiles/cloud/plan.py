@@ -14,10 +14,11 @@ from wavelet_core.errors import OptionError
 from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import CoordinateSystem, Georeference, LocalFrame
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, EPT, any_of, suffix_of
 from wavelet_gis.io.las.batches import CloudHead, read_head
 from wavelet_gis.io.las.cloud_reader import laspy_header, warn_of_crs
 from wavelet_gis.io.las.dimensions import HEIGHT_ABOVE_GROUND
+from wavelet_gis.io.las.ept import nodes_within, read_ept
 from wavelet_gis.io.names import files_of, joint_name
 from wavelet_gis.model.points.aside import DUPLICATE_RULES
 from wavelet_gis.model.points.cloud import PointCloud
@@ -46,6 +47,8 @@ _REACH = 16
 #: Largest p and q of a ratio.
 _LARGEST_TERM = 64
 
+#: Steps from the first offset to a point, and from end to end: a cell of the whole, by rows and
+#: columns, is one int64.
 _LARGEST_SHIFT = np.iinfo(np.int32).max
 
 
@@ -102,7 +105,10 @@ def plan_of_clouds(
             "attributes",
         )
     wavelets = checked_wavelets(wavelets)
-    paths = [os.path.abspath(path) for path in files_of(data)]
+    given = files_of(data)
+    if os.path.basename(given[0]) == EPT and not given[1:]:
+        given = nodes_within(read_ept(given[0]))
+    paths = [os.path.abspath(path) for path in given]
     heads = _heads(paths)
     places = [head.place for head in heads]
     for path, one in zip(paths, places, strict=True):
@@ -292,10 +298,11 @@ def _extents(
         lows.append([low for low, _ in ends])
         highs.append([high for _, high in ends])
     low, high = np.array(lows), np.array(highs)
-    if max(-low.min(), high.max()) > _LARGEST_SHIFT:
+    longest = (high.max(axis=0) - low.min(axis=0)).max() + 1
+    if max(-low.min(), high.max(), longest) > _LARGEST_SHIFT:
         raise InputFileError(
             f"{joint_name(list(paths))}: the files lie too far from one another for coordinates "
-            f"in steps of {max(map(abs, first.scales)):g}; tile them in parts."
+            f"in steps of {max(map(abs, first.scales[:2])):g}; tile them in parts."
         )
     return low.astype(np.int64), high.astype(np.int64)
 

@@ -26,6 +26,10 @@ _SHARE_OF_CHORDS = 0.4
 
 _MOST_PARTS = 64
 _SMALLEST_STEP = 2.0**-10
+
+#: Steps of height from 0 that the format's single precision can count.
+_MOST_STEPS = 1 << 24
+
 _LARGEST_ZOOM = 22
 
 #: Steps of height that an error must be, at least, so that rounding is a small part of it: a limit,
@@ -97,7 +101,15 @@ def plan_tiles(
             "{0} is {zoom}; give 0 to {largest}.", "zoom", zoom=zoom, largest=_LARGEST_ZOOM
         )
     low, high = min(float(globe.height.min()), fill), max(float(globe.height.max()), fill)
-    exponent = math.ceil(math.log2(max((high - low) / (STEPS - 1), _SMALLEST_STEP)))
+    exponent = math.ceil(
+        math.log2(
+            max(
+                (high - low) / (STEPS - 1),
+                max(abs(low), abs(high)) / (_MOST_STEPS - 2 * STEPS),
+                _SMALLEST_STEP,
+            )
+        )
+    )
     step = 2.0**exponent
     least = _STEPS_OF_ERROR * step
     error = max(ERROR_OF_SPACING * spacing, least) if max_error is None else max_error

@@ -59,6 +59,10 @@ _SHARE_OF_CHAINS = 0.4
 _SHARE_HANDED_ON = 1 / 16
 
 
+#: More tiles than this are refused rather than tried: as many as 16 billion points have.
+_MOST_TILES = 1_000_000
+
+
 class ZoomFigures(NamedTuple):
     """What a zoom has.
 
@@ -268,10 +272,19 @@ class _Writer:
         plan, source = self._plan, self._source
         low, high = source.extent() * (tile_width(plan.zoom) / STEPS) - [180.0, 90.0]
         ranges = ranges_of((*low.tolist(), *high.tolist()), plan.zoom)
+        n_tiles = sum(len(tiles) for tiles in ranges)
+        if n_tiles > _MOST_TILES:
+            raise OptionError(
+                "{name}: with zooms up to {zoom} there are {n_tiles:,} tiles around it, nearly all "
+                "of them without a point; give a smaller {0}, or cut the terrain into parts.",
+                "zoom",
+                name=name,
+                zoom=plan.zoom,
+                n_tiles=n_tiles,
+            )
         edges = tile_edges(
             source, ranges[-1], plan.height_step, _SHARE_OF_CHAINS * plan.max_error, plan.n_parts()
         )
-        n_tiles = sum(len(tiles) for tiles in ranges)
         n_done = 0
         figures: list[ZoomFigures] = []
         offs: list[_Off] = []

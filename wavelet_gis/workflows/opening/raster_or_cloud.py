@@ -8,7 +8,8 @@ from typing import Any, Literal
 
 from wavelet_gis.crs.frame import CoordinateSystem, vertical_unit_name
 from wavelet_gis.errors import CrsError
-from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
+from wavelet_gis.io.formats import EPT, is_cloud
+from wavelet_gis.io.las.ept import nodes_within, read_ept
 from wavelet_gis.io.names import files_of, joint_name, readable
 from wavelet_gis.model.attributes.categories import one_channel_per_category
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem
@@ -91,10 +92,15 @@ def open_terrain(
     }
     of_surface = {"duplicates": duplicates, "max_edge": max_edge, "concave": concave}
     name = readable(joint_name(files))
-    if suffix_of(files[0]) in CLOUD_SUFFIXES:
+    if is_cloud(files[0]):
         require_meaning(name, CLOUD, {"band": band, "nodata": nodata})
+        wkt = None
+        if os.path.basename(files[0]) == EPT and not files[1:]:
+            ept = read_ept(files[0])
+            files, of_reading["resolution"] = nodes_within(ept, bbox, resolution), None
+            wkt = ept.wkt
         return _terrain_of_las(
-            name, files, override, vertical_unit, of_reading, of_surface, class_channels
+            name, files, override, vertical_unit, of_reading, of_surface, class_channels, wkt
         )
     require_meaning(name, RASTER, {**of_reading, **of_surface, "class_channels": class_channels})
     return _terrain_of_raster(name, files, override, vertical_unit, of_raster)
@@ -108,7 +114,9 @@ def _terrain_of_las(
     of_reading: dict[str, Any],
     of_surface: dict[str, Any],
     class_channels: bool,
+    wkt: str | None,
 ) -> Terrain:
+    """Return the terrain of points; ``wkt`` is the CRS where the files themselves have none."""
     from wavelet_gis.crs.lookup import coordinate_system
     from wavelet_gis.io.las import read_cloud, read_clouds
 
@@ -121,7 +129,7 @@ def _terrain_of_las(
     )
     if class_channels:
         cloud = one_channel_per_category(cloud)
-    system = override or coordinate_system(place.wkt)
+    system = override or coordinate_system(place.wkt or wkt)
     unit = vertical_unit or place.vertical_unit
     return terrain_of_cloud(name, cloud, system, unit, fault=place.fault, **of_surface)
 

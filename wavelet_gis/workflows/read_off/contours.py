@@ -23,9 +23,9 @@ from wavelet_gis.workflows.read_off.levels import checked_levels
 
 __all__ = ["Contours", "contours"]
 
-#: Of an interval, how large the RMSE may be of the level that is taken where none is named.
+#: Part of the interval that the RMSE of a level may be which is taken where none is named.
 FITTING_ERROR = 0.2
-#: Every which contour is one of the index, which maps draw thick.
+#: One contour in so many is an index contour, which maps draw thick.
 INDEX = 5
 #: More heights than this are refused rather than tried.
 MOST_HEIGHTS = 100_000
@@ -66,7 +66,7 @@ class Contours:
             {"elevation": self.heights, "is_index": (steps % INDEX == 0).astype(np.int64)},
             contour_style(),
             f"Contours of level {self.level}",
-            f"Contour lines each {self.interval:g}; every fifth is of the index",
+            f"Contour lines at intervals of {self.interval:g}; every fifth is an index contour",
         )
 
     def write(self, path: str | os.PathLike[str]) -> dict[str, Any]:

@@ -94,9 +94,9 @@ def difference(
     mesh = geo.pyramid.mesh(level)
     if less is None or isinstance(less, int | np.integer):
         other = checked_levels(geo, [geo.pyramid.n_levels if less is None else less])[0]
-        finest = geo.pyramid.mesh(other)
-        geometry = grid_of(geo, finest if other > level else mesh, cell_size)
-        there = _on_grid(geo, finest, geometry)
+        subtrahend = geo.pyramid.mesh(other)
+        geometry = grid_of(geo, subtrahend if other > level else mesh, cell_size)
+        there = _on_grid(geo, subtrahend, geometry)
     else:
         if cell_size is not None:
             raise OptionError("{0} is not for a DEM, which has its own; leave it out.", "cell_size")

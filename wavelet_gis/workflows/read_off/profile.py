@@ -49,7 +49,7 @@ class Profile:
     line : (n,) int64
         Which line a point is of, from 0.
     distance : (n,) float64
-        From the begin of its line in plan, in the unit of x and y; metres for degrees.
+        From the start of its line in plan, in the unit of x and y; metres for degrees.
     places : (n, 2) float64
         x and y in the coordinates of the input.
     heights : (n, n_levels) float64
@@ -91,7 +91,7 @@ class Profile:
             fields,
             vertex_style(),
             "Profile",
-            "Points along a line: distance from its begin, and the height of each level",
+            "Points along a line: distance from its start, and the height of each level",
         )
 
     def write(self, path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -136,7 +136,7 @@ class Profile:
         return {"levels": list(self.levels), "n_points": len(self.line), "profiles": rows}
 
     def csv(self) -> str:
-        """Return the table as text, a line each point; nothing where there is no height."""
+        """Return the table as text, a line for each point; empty cells where there is no height."""
         columns = self.table()
         rows = [",".join(columns)]
         for values in zip(*(column.tolist() for column in columns.values()), strict=True):

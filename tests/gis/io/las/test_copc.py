@@ -29,6 +29,37 @@ def test_a_box_of_a_cloud(tmp_path):
         read_cloud(path, resolution=1.0)
 
 
+@pytest.fixture
+def two_clouds(tmp_path):
+    """Return two clouds beside each other; the second has no ground."""
+    paths = [write_las(tmp_path / f"{k}.laz", 3000, seed=k) for k in range(2)]
+    las = laspy.read(paths[1])
+    las.x = np.array(las.x) + 100.0
+    las.classification[las.classification == 2] = 9
+    las.write(paths[1])
+    return paths
+
+
+def test_files_beside_the_box_are_passed_over(two_clouds):
+    """Of several files all had to have points in it, or the work was refused."""
+    box = (500020.0, 5100030.0, 500070.0, 5100050.0)
+    alone = wg.open(two_clouds[0], bbox=box)
+    together = wg.open(two_clouds, bbox=box)
+    assert together.mesh == alone.mesh
+    told = [note.text for note in together.notes if note.code == "files_without_points"]
+    assert told == [
+        "1 of 2 files have no point of the chosen classes or in the box and are passed over, the "
+        "first is 1.laz"
+    ]
+    with pytest.raises(InputFileError, match=r"0.laz: there are no points in the box"):
+        wg.open(two_clouds, bbox=(0, 0, 1, 1))
+
+
+def test_files_without_the_class_are_passed_over(two_clouds):
+    assert wg.open(two_clouds, classes=[2]).mesh == wg.open(two_clouds[0], classes=[2]).mesh
+    assert wg.open(two_clouds, classes=[2, 9]).mesh.n_vertices > 1000
+
+
 def records(points):
     """Rows of X, Y, Z in an order of their own."""
     rows = np.column_stack([points["X"], points["Y"], points["Z"]])

@@ -110,3 +110,44 @@ def test_a_number_with_a_comment_mark_in_it_is_no_shorter_number(tmp_path):
     path = tmp_path / "points.xyz"
     path.write_text("\n# of a hill\n".join(rows).replace(",", " ") + "\n")
     assert len(read_point_table(path).points) == 16
+
+
+@pytest.mark.parametrize(
+    "heading", ["# x y z intensity", "# a survey\n#X Y Z intensity", "#x,y,z,intensity"]
+)
+def test_names_in_a_comment_are_those_of_the_columns(tmp_path, heading):
+    """``# x y z intensity`` made x of the second column, y of the third, z of the intensity."""
+    path = tmp_path / "points.xyz"
+    path.write_text(f"{heading}\n0 1 10 100\n1 2 11 200\n2 5 12 300\n")
+    expected = [[0, 1, 10], [1, 2, 11], [2, 5, 12]]
+    np.testing.assert_array_equal(read_point_table(path).points, expected)
+    table = read_point_table(path, ("intensity",))
+    np.testing.assert_array_equal(table.attributes, [[100], [200], [300]])
+
+
+@pytest.mark.parametrize(
+    "comment", ["# made by a scanner", "# the columns are x y z", "# z y x\n#"]
+)
+def test_a_table_may_begin_with_a_comment(tmp_path, comment):
+    """It was refused for want of a column x, or its words were taken for names of columns."""
+    path = tmp_path / "points.xyz"
+    path.write_text(f"{comment}\n0 1 10\n1 2 11\n2 5 12\n")
+    first = [10, 1, 0] if "z y x\n" in comment else [0, 1, 10]
+    np.testing.assert_array_equal(read_point_table(path).points[0], first)
+    path.write_text(f"{comment}\nx;y;z\n0;1;10\n")
+    np.testing.assert_array_equal(read_point_table(path).points[0], [0, 1, 10])
+
+
+@pytest.mark.parametrize(("option", "value"), [("attributes", ("name",)), ("z_field", "name")])
+def test_a_field_of_words_is_refused_in_one_line(tmp_path, option, value):
+    """It ended in ``could not convert string to float``."""
+    path = tmp_path / "points.gpkg"
+    points = shapely.to_wkb(np.array([shapely.Point(*corner) for corner in TRIANGLE], dtype=object))
+    pyogrio.raw.write(
+        path, points, [np.array(["a", "b", "c"], dtype=object)], ["name"], crs="EPSG:25832",
+        geometry_type="Point Z", driver="GPKG",
+    )  # fmt: skip
+    with pytest.raises(
+        InputFileError, match=rf"'name' does not hold numbers; name another with {option}"
+    ):
+        open_input(path, **{option: value})
