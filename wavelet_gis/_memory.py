@@ -162,13 +162,19 @@ def _left_in(folder: Path) -> int | None:
 
 
 def _of_process() -> int | None:
-    """Return the limit of the process's own addresses, as ``ulimit -v`` sets it."""
+    """Return what the limit of the process's addresses leaves, as ``ulimit -v`` sets it."""
     try:
         import resource
     except ImportError:
         return None
     limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-    return None if limit == resource.RLIM_INFINITY else int(limit)
+    if limit == resource.RLIM_INFINITY:
+        return None
+    try:
+        n_pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
+    except OSError:  # no Linux; then the limit is all that is known
+        n_pages = 0
+    return max(int(limit) - n_pages * resource.getpagesize(), 0)
 
 
 def _of_windows() -> int | None:

@@ -1,5 +1,8 @@
 """Work that will not fit is refused before it begins, with the figures."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -64,3 +67,14 @@ def test_a_group_has_no_more_than_those_around_it(tmp_path):
     group(tmp_path / "user" / "job", 900, 300)
     assert _memory._of_group(tmp_path, "/user/job") == 600
     assert _memory._of_group(tmp_path / "none", "/user/job") is None
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_addresses_in_use_are_not_free():
+    """The limit of ``ulimit -v`` was taken for what is left of it."""
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30));"
+        "taken = bytearray(3 << 30); from wavelet_gis import _memory; print(_memory._of_process())"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert 1 << 30 < int(said.stdout) < 5 << 30

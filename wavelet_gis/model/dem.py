@@ -17,6 +17,7 @@ from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.errors import InputFileError
 
 __all__ = [
+    "SAME_AS_NODATA",
     "Dem",
     "GridGeometry",
     "InputGrid",
@@ -24,6 +25,7 @@ __all__ = [
     "dem_mesh",
     "grid_bounds",
     "require_sound",
+    "taken_for_nodata",
 ]
 
 #: Elevations beyond this, in any unit, leave no digits for geometry.
@@ -31,6 +33,10 @@ LARGEST_ELEVATION = 1e30
 
 #: And no place is further from the origin of a CRS.
 LARGEST_COORDINATE = 1e15
+
+#: Floats that differ from the nodata value by no more than this part of it are nodata to GDAL, four
+#: steps of single precision, whatever the precision of the raster.
+SAME_AS_NODATA = 5e-7
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,3 +277,11 @@ def grid_bounds(geometry: GridGeometry) -> tuple[float, float, float, float]:
     rows = np.array([0, 0, n_rows, n_rows]) - 0.5
     x, y = geometry.centres(columns, rows)
     return float(x.min()), float(y.min()), float(x.max()), float(y.max())
+
+
+def taken_for_nodata(values: NDArray[Any], nodata: float | int) -> NDArray[np.bool_]:
+    """Return which numbers GDAL takes for a nodata value: for floats the next few, too."""
+    if values.dtype.kind != "f" or not math.isfinite(nodata):
+        return np.asarray(values == nodata)
+    apart = np.abs(np.subtract(values, nodata, dtype=np.float64))
+    return np.asarray(apart <= SAME_AS_NODATA * abs(nodata))

@@ -13,7 +13,15 @@ from wavelet_core import TriangleMesh
 from wavelet_core.errors import PyramidError
 from wavelet_gis._fields import Fields
 from wavelet_gis.crs.frame import LocalFrame
-from wavelet_gis.model.dem import Dem, GridGeometry, InputGrid, cell_plan, dem_mesh
+from wavelet_gis.model.dem import (
+    SAME_AS_NODATA,
+    Dem,
+    GridGeometry,
+    InputGrid,
+    cell_plan,
+    dem_mesh,
+    taken_for_nodata,
+)
 from wavelet_gis.model.exact_restore import (
     CORRECTIONS,
     ExactColumn,
@@ -27,10 +35,6 @@ from wavelet_gis.model.exact_restore import (
 )
 
 __all__ = ["RasterOrigin"]
-
-#: Floats that differ from the nodata value by no more than this part of it are nodata to GDAL, four
-#: steps of single precision, whatever the precision of the raster.
-SAME_AS_NODATA = 5e-7
 
 #: Rows or columns; GDAL knows no larger rasters.
 _LARGEST_SIDE = 2**31 - 1
@@ -248,16 +252,16 @@ def _avoiding_nodata(values: NDArray[Any], nodata: float | int | None) -> NDArra
     """Move elevations that fell on the nodata value away from it, so that they stay data."""
     if nodata is None or (isinstance(nodata, float) and math.isnan(nodata)):
         return values
-    if values.dtype.kind == "f":
-        near = SAME_AS_NODATA * abs(nodata)
-        clash = np.abs(values - values.dtype.type(nodata)) <= near
-        smallest = float(np.finfo(values.dtype).smallest_subnormal)
-        values[clash] = nodata - math.copysign(2 * near, nodata) if nodata else smallest
+    clash = taken_for_nodata(values, nodata)
+    if not clash.any():
         return values
-    clash = values == nodata
-    if clash.any():
-        tag = values.dtype.type(nodata)
+    tag = values.dtype.type(nodata)
+    if values.dtype.kind != "f":
         values[clash] = tag + 1 if tag < np.iinfo(values.dtype).max else tag - 1
+    elif nodata == 0:
+        values[clash] = np.finfo(values.dtype).smallest_subnormal
+    else:
+        values[clash] = nodata * (1.0 - 2 * SAME_AS_NODATA)
     return values
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_gis.model.attributes.categories import Categories, nearest_vertices
-from wavelet_gis.model.dem import Dem
+from wavelet_gis.model.dem import Dem, taken_for_nodata
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.products.lone_vertices import fill_lone_cells
 from wavelet_gis.products.rasterise import rasterise
@@ -116,7 +116,7 @@ def tag_without_clash(
     """
     if wished is None or abs(float(wished)) > float(np.finfo(values.dtype).max):
         return float("nan")
-    is_clash = bool((values[covered] == values.dtype.type(wished)).any())
+    is_clash = bool(taken_for_nodata(values[covered], wished).any())
     return float("nan") if is_clash else float(wished)
 
 

@@ -343,7 +343,8 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
         origin=MeshOrigin(),
         source_name=piece.name,
     )
-    # With the points that the analysis knows, vertices are more than their part of a larger group.
+    # The analysis of a group of four tiles has measured its levels at all points of the input; that
+    # of a larger one knows part of them, and all that are its vertices, which would count too much.
     is_all = plan.is_error_guided and piece.stage == 1
     return geo.with_errors(points=None if is_all else sample)
 

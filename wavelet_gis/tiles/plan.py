@@ -47,9 +47,9 @@ TILE = 1024
 LEVELS = 64
 
 #: Part of its vertices to which a piece goes down, far enough for flat ones; rough pieces hand on a
-#: level long before (`wavelet_gis.tiles.handover`). And largest share that a level takes: with 0.25
-#: the level of a quarter of the vertices has up to 1.4 times the RMSE of a TIN made for its size
-#: (autzen_trim), with 0.12 up to 1.09, in the same time.
+#: level long before (`wavelet_gis.tiles.handover`). And the largest share of its vertices that a
+#: level takes: with 0.25 the level of a quarter of the vertices has up to 1.4 times the RMSE of a
+#: TIN made for its size (autzen_trim), with 0.12 up to 1.09, in the same time.
 _COARSEST_SHARE, _SHARE_OF_LEVEL = 1 / 32, 0.12
 
 #: Options of `wavelet_core.analyse` that leave x and y of the vertices in place.
@@ -133,7 +133,7 @@ class TilePlan:
     rows, columns : tuple of int
         Where tiles end: those cells belong to both tiles.
     levels : int
-        Of each piece but the last.
+        The most of each piece but the last.
     reading : dict
         ``band``, ``nodata``, ``offline``; of points ``attributes``, ``classes`` and others.
     wavelets : dict
@@ -333,7 +333,7 @@ class TilePlan:
                 transform=tuple(stored.numbers("transform", 6)),
                 rows=_ends(stored, "rows", n_rows),
                 columns=_ends(stored, "columns", n_columns),
-                levels=stored.integer("levels", 1, 64),
+                levels=stored.integer("levels", 1, LEVELS),
                 reading=dict(stored.fields("reading")),
                 wavelets=dict(stored.fields("wavelets")),
                 system=dict(stored.fields("system")),
@@ -384,13 +384,14 @@ def plan_of_rasters(
     """
     from wavelet_gis.crs.lookup import coordinate_system
 
-    if tile < 8 or not 1 <= levels <= 64:
+    if tile < 8 or not 1 <= levels <= LEVELS:
         raise OptionError(
-            "{0} is {tile} and {1} is {levels}; give at least 8 cells, and 1 to 64 levels.",
+            "{0} is {tile} and {1} is {levels}; give at least 8 cells, and 1 to {most} levels.",
             "tile",
             "levels",
             tile=tile,
             levels=levels,
+            most=LEVELS,
         )
     wavelets = checked_wavelets(wavelets)
     paths = _raster_paths(data)

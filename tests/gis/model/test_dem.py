@@ -14,8 +14,9 @@ from wavelet_gis.crs.frame import LocalFrame, working_frame
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.raster import write_dem
-from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh, grid_bounds
+from wavelet_gis.model.dem import Dem, GridGeometry, dem_mesh, grid_bounds, taken_for_nodata
 from wavelet_gis.model.raster_origin import RasterOrigin
+from wavelet_gis.products.level_raster import tag_without_clash
 
 NORTH_UP = (2.0, 0.0, 100.0, 0.0, -3.0, 60.0)
 SOUTH_UP = (2.0, 0.0, 100.0, 0.0, 3.0, 0.0)
@@ -145,6 +146,22 @@ def test_altered_cells_near_the_nodata_value_stay_data_to_gdal(tmp_path, tag, dt
     with rasterio.open(tmp_path / "back.tif") as dataset:
         assert dataset.read_masks(1).all()
     assert np.abs(back.values - tag).max() <= 2e-6 * abs(tag) + 1e-40
+
+
+def test_a_surface_that_comes_near_the_nodata_value_has_another():
+    """To GDAL a cell of 300.00001 was nodata, as one of 300 is."""
+    values = np.array([[300.00001, 310.0]])
+    covered = np.ones((1, 2), dtype=bool)
+    assert np.isnan(tag_without_clash(values, covered, 300.0))
+    assert tag_without_clash(values, covered, 0.0) == 0.0
+    assert tag_without_clash(values, covered, 300.001) == 300.001
+
+
+@pytest.mark.parametrize("tag", [np.inf, -np.inf, -1.7976931348623157e308, -3.4028234663852886e38])
+def test_no_elevation_is_near_a_nodata_value_beyond_all_measure(tag):
+    values = np.array([-1e29, 0.0, 300.0, tag], dtype="f8")
+    assert taken_for_nodata(values, tag).tolist() == [False, False, False, True]
+    assert not taken_for_nodata(values[:3].astype("f4"), tag).any()
 
 
 def test_another_mesh_is_no_original():

@@ -408,6 +408,8 @@ def test_a_broken_crs_is_told_of_as_by_a_single_cloud(tmp_path):
 def test_refusals(cloud, parts, tmp_path):
     with pytest.raises(OptionError, match="a tile needs some thousand points"):
         wg.tile_clouds(cloud, tmp_path / "t", tile=10)
+    with pytest.raises(OptionError, match="a tile needs some thousand points"):
+        wg.tile_clouds(cloud, tmp_path / "t", tile=1e-9)  # of which no list can be made
     with pytest.raises(OptionError, match="give a length above 0"):
         wg.tile_clouds(cloud, tmp_path / "t", tile=-1)
     with pytest.raises(OptionError, match="heights above the ground"):

@@ -108,6 +108,10 @@ class TestProfile:
         assert rows[0]["z_05"] == ""
         wg.save(found, tmp_path / "p.gpkg")
         assert pyogrio.read_info(tmp_path / "p.gpkg", layer="profile")["features"] == len(rows)
+        _, _, geometry, _ = pyogrio.raw.read(tmp_path / "p.gpkg", layer="profile")
+        # Beside the terrain points lay at a height of 0.
+        z = shapely.get_z(shapely.from_wkb(geometry))
+        np.testing.assert_array_equal(z, found.heights[:, 1])
 
     def test_several_lines_are_told_apart(self, pyramid):
         lines = [[[X + 5, Y - 25], [X + 95, Y - 25]], [[X + 5, Y - 95], [X + 5, Y - 295]]]

@@ -96,8 +96,10 @@ def plan_of_clouds(
     """
     from wavelet_gis.crs.lookup import coordinate_system
 
-    if not 1 <= levels <= 64:
-        raise OptionError("{0} is {levels}; give 1 to 64 levels.", "levels", levels=levels)
+    if not 1 <= levels <= LEVELS:
+        raise OptionError(
+            "{0} is {levels}; give 1 to {most} levels.", "levels", levels=levels, most=LEVELS
+        )
     if any(name.lower() == HEIGHT_ABOVE_GROUND for name in attributes):
         raise OptionError(
             "{0}: heights above the ground are not the same from both sides of a border; compute "
@@ -250,7 +252,11 @@ def _ends(
         given = tile if isinstance(tile, tuple) else (tile, tile)
         if not all(np.isfinite(one) and one > 0 for one in given):
             raise OptionError("{0} is {tile}; give a length above 0.", "tile", tile=tile)
-        sides = [one / abs(scale) for one, scale in zip(given, scales, strict=True)]
+        # Sides far too small are refused below, but a list of their ends comes before that.
+        sides = [
+            max(one / abs(scale), _LEAST_SIDE * spacing / term / 4)
+            for one, scale, term in zip(given, scales, ratio, strict=True)
+        ]
     columns, rows = (
         ends_of_tiles(n_cells, side)
         for n_cells, side in zip((shape[1], shape[0]), sides, strict=True)

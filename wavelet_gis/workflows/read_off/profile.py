@@ -79,9 +79,9 @@ class Profile:
         return columns
 
     def layer(self) -> Layer:
-        """Return the points as a layer, z of the finest level that is shown."""
+        """Return the points as a layer, z of the finest level shown; NaN where it has none."""
         finest = self.heights[:, int(np.argmax(self.levels))]
-        places = np.column_stack([self.places, np.nan_to_num(finest)])
+        places = np.column_stack([self.places, finest])
         columns = self.table()
         fields = {name: columns[name] for name in columns if name not in ("x", "y")}
         return Layer(
