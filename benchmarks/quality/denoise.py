@@ -2,17 +2,15 @@
 
     python benchmarks/quality/denoise.py [DATA] [--pyramids 32]
         [--pictures docs/images] [--only-ours]
-    python benchmarks/quality/denoise.py [DATA] --kinds    # several kinds of noise, smaller windows
 
 Normal noise of known standard deviation is added to DEMs, which then count as clean. The others
 are given that deviation and every one of their settings is chosen with the clean DEM at hand, on
 each DEM anew, to the advantage of all of them; ours is given the deviation, and nothing else.
-Needs scikit-image and PyWavelets; --kinds goes without the filters of theirs where they are not.
+Needs scikit-image and PyWavelets. Other kinds of noise are in denoise_kinds.py.
 """
 
 import argparse
 import warnings
-from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
 from time import process_time
@@ -62,7 +60,7 @@ def median_and_gaussian(noisy, sigma):
 
 
 def bilateral(noisy, sigma):
-    for width, strength in product((1.0, 1.5, 2.5), (1.5, 2.5, 4.0, 8.0)):
+    for width, strength in product((1.0, 1.5, 2.5, 4.0), (1.5, 2.5, 4.0, 8.0, 16.0)):
         reach = int(np.ceil(2 * width))
         padded = np.pad(noisy, reach, mode="reflect")
         total, weights = np.zeros_like(noisy), np.zeros_like(noisy)
@@ -93,7 +91,7 @@ def non_local_means(noisy, sigma):
         )
 
 
-def bayes_shrink(noisy, sigma, shifts=(0,)):
+def bayes_shrink(noisy, sigma, shifts=(0,), wavelets=WAVELETS, depths=LEVELS):
     """Yield results of PyWavelets' transforms with BayesShrink, averaged over ``shifts``.
 
     Terrain is no torus: a shift cuts its window from the DEM mirrored beyond its edges, since the
@@ -106,7 +104,7 @@ def bayes_shrink(noisy, sigma, shifts=(0,)):
     image = 0.25 + 0.5 * (noisy - low) / span  # denoise_wavelet clips to [0, 1]
     image = np.pad(image, ((margin, margin), (margin, margin)), mode="reflect")
     n_rows, n_columns = (n + margin for n in noisy.shape)
-    for wavelet, levels in product(WAVELETS, LEVELS):
+    for wavelet, levels in product(wavelets, depths):
         total = np.zeros_like(noisy)
         for down, right in product(shifts, shifts):
             part = denoise_wavelet(
@@ -157,87 +155,6 @@ def row(path, top, left, cell, sigma, n_pyramids, only_ours):
         figures[f"{count} pyramids"] = error, f"{seconds:.0f} s of CPU"
     figures["noise estimated"] = estimate_noise(mesh), ""
     return figures
-
-
-#: Side of the windows on which kinds of noise are compared.
-SMALL_WINDOW = 200
-
-
-def white(clean, sigma, cell, rng):
-    return clean + rng.normal(0, sigma, clean.shape), {"sigma": sigma}
-
-
-def correlated(clean, sigma, cell, rng):
-    noise = ndimage.gaussian_filter(rng.normal(size=clean.shape), 1.5, mode="wrap")
-    noisy = clean + sigma * noise / noise.std()
-    return noisy, {"sigma": sigma, "noise_range": 3.0 * cell}
-
-
-def correlated_estimated(clean, sigma, cell, rng):
-    return correlated(clean, sigma, cell, rng)[0], {"noise_range": "estimate"}
-
-
-def by_place(clean, sigma, cell, rng):
-    """Noise that grows with the slope, a tenth of it where it is flat."""
-    down, right = np.gradient(ndimage.gaussian_filter(clean, 3), cell)
-    steep = np.hypot(down, right)
-    local = sigma * (0.2 + 2.0 * steep / np.quantile(steep, 0.95))
-    return clean + local * rng.normal(size=clean.shape), {"local_noise": True}
-
-
-def with_outliers(clean, sigma, cell, rng):
-    """White noise, and 1 % of the cells off by 10 to 50 times that."""
-    noisy, _ = white(clean, sigma, cell, rng)
-    off = rng.random(clean.shape) < 0.01
-    signs = rng.choice([-1, 1], clean.shape)
-    noisy += off * signs * rng.uniform(10, 50, clean.shape) * sigma
-    return noisy, {"outliers": True}
-
-
-def rounded(clean, sigma, cell, rng):
-    """Values rounded to 3.5 sigma, whose noise is sigma, and nothing else."""
-    step = np.sqrt(12) * sigma
-    return np.round(clean / step) * step, {}
-
-
-def weak(clean, sigma, cell, rng):
-    """White noise of a tenth of sigma, which is not given: rough relief is far above it."""
-    return white(clean, sigma / 10, cell, rng)[0], {}
-
-
-KINDS = (white, correlated, correlated_estimated, by_place, with_outliers, rounded, weak)
-
-
-def kinds(data, only_ours, names):
-    """Print a table of kinds of noise by filters on each DEM; ours gets what its row says."""
-    peers = {
-        "Gaussian": gaussian,
-        "median": median,
-        "median, then Gaussian": median_and_gaussian,
-        "bilateral": bilateral,
-    }
-    if find_spec("skimage") and find_spec("pywt"):
-        peers |= {"non-local means": non_local_means, "BayesShrink": bayes_shrink}
-    columns = ["noisy", *([] if only_ours else peers), "ours"]
-    print("| DEM | noise |", " | ".join(columns), "|")
-    print("| --- | --- |", " | ".join(["---:"] * len(columns)), "|", flush=True)
-    for name, top, left, cell, sigma in DEMS:
-        with rasterio.open(data / "dems" / name) as file:
-            rows, columns = slice(top, top + SMALL_WINDOW), slice(left, left + SMALL_WINDOW)
-            clean = file.read(1).astype(float)[rows, columns]
-        for kind in KINDS:
-            if names and kind.__name__ not in names:
-                continue
-            noisy, options = kind(clean, sigma, cell, np.random.default_rng(0))
-            figures = [rmse(noisy, clean)]
-            if not only_ours:
-                figures += [best(method(noisy, sigma), clean)[0] for method in peers.values()]
-            result = denoise(mesh_of(noisy, cell), **options)
-            figures.append(rmse(result.vertices[:, 2], clean.ravel()))
-            least = min(figures)
-            cells = (f"**{f:.4g}**" if f == least else f"{f:.4g}" for f in figures)
-            kind_name = kind.__name__.replace("_", " ")
-            print(f"| `{name}` | {kind_name} |", " | ".join(cells), "|", flush=True)
 
 
 def lidar_profile(data, pictures):
@@ -308,14 +225,8 @@ def main():
     parser.add_argument("--pyramids", type=int, default=32)
     parser.add_argument("--pictures", type=Path)
     parser.add_argument("--only-ours", action="store_true", help="leave the others out")
-    parser.add_argument(
-        "--kinds", nargs="*", metavar="NAME", help="noise of several kinds, or of these, instead"
-    )
     arguments = parser.parse_args()
     warnings.filterwarnings("ignore", category=UserWarning)  # of levels and wavelets tried
-    if arguments.kinds is not None:
-        kinds(arguments.data, arguments.only_ours, arguments.kinds)
-        return
     lidar_profile(arguments.data, arguments.pictures)
     for name, top, left, cell, sigma in DEMS:
         figures = row(

@@ -24,6 +24,7 @@ from ..parameters.choices import choice, clusterings
 from ..parameters.pyramid import crs_of
 from ..parameters.request import Request
 from ..parameters.surface_output import add_cell_size_parameter
+from ..parameters.text_output import write_text_output
 from ..ui import dependencies
 from ..ui.enums import NUMERIC_FIELD, POINTS, POLYGONS, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
@@ -231,14 +232,7 @@ class ClusterDetails(PyramidAlgorithm):
         if labelled.validation is not None:
             results["ACCURACY"] = labelled.validation.accuracy
         results.update(_written(request, labelled))
-        path = request.output_file("SUMMARY")
-        if path:
-            from wavelet_gis.io.atomic import new_file
-            from wavelet_gis.io.read_back import write_text
-
-            with new_file(path, overwrite=True) as scratch:
-                write_text(scratch, json.dumps(summary, indent=1))
-            results["SUMMARY"] = path
+        results.update(write_text_output(request, "SUMMARY", lambda: json.dumps(summary, indent=1)))
         return results
 
     def _clusters(self, request: Request, geo: GeoPyramid) -> Labelled:

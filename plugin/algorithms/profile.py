@@ -63,7 +63,7 @@ class Profile(PyramidAlgorithm):
         return tr(
             "Walks along lines and reads off the height of several levels of a pyramid. The plot "
             "shows them one above the other, and below, how far each is off the finest. The points "
-            "carry the distance from the begin of their line and a height for each level."
+            "carry the distance from the start of their line and a height for each level."
         )
 
     def declare(self) -> None:

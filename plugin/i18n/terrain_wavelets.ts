@@ -1545,7 +1545,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/profile.py"/>
-    <source>Walks along lines and reads off the height of several levels of a pyramid. The plot shows them one above the other, and below, how far each is off the finest. The points carry the distance from the begin of their line and a height for each level.</source>
+    <source>Walks along lines and reads off the height of several levels of a pyramid. The plot shows them one above the other, and below, how far each is off the finest. The points carry the distance from the start of their line and a height for each level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -71,7 +71,7 @@ def _label(feature: QgsFeature, index: int, field: str) -> int:
     value = feature.attributes()[index]
     try:
         label = int(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # NULL, a word, infinity
         label = -1
     if not 0 <= label <= 254 or label != value:
         raise QgsProcessingException(

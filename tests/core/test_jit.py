@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import wavelet_core
-from wavelet_core import SlowFallbackWarning
+from wavelet_core import OptionError, SlowFallbackWarning
 from wavelet_core._kernels import _jit
 
 PACKAGE = Path(wavelet_core.__file__).parent
@@ -100,6 +100,21 @@ def test_a_kernel_runs_over_ranges_like_over_the_whole(n, monkeypatch):
     covered = np.zeros(n, dtype=np.int64)
     _jit.run_in_ranges(counting, n, covered)
     assert (covered == 1).all()
+
+
+@pytest.mark.parametrize("wish", ["0", "-2", "four", "1.5", "²"])
+def test_a_wish_that_is_no_number_of_threads_is_refused(wish, monkeypatch):
+    """All cores were taken instead, in silence."""
+    monkeypatch.setenv("TERRAIN_WAVELETS_THREADS", wish)
+    with pytest.raises(OptionError, match="give a whole number of 1 or more") as caught:
+        _jit.n_threads()
+    assert "TERRAIN_WAVELETS_THREADS" in str(caught.value)
+
+
+@pytest.mark.parametrize(("wish", "n"), [("3", 3), (" 2 ", 2), ("", os.cpu_count())])
+def test_the_number_of_threads_is_that_of_the_environment_or_of_the_cores(wish, n, monkeypatch):
+    monkeypatch.setenv("TERRAIN_WAVELETS_THREADS", wish)
+    assert _jit.n_threads() == n
 
 
 @_jit.kernel

@@ -23,12 +23,18 @@ def summed(
 ) -> NDArray[np.float64]:
     """Return ``start`` with the values of each row added to it, one after the other.
 
-    ``bincount`` adds in order, as a loop would; ``reduceat`` pairs and so rounds otherwise.
+    ``bincount`` adds in order, as a loop would; ``reduceat`` pairs and so rounds otherwise. It
+    begins at 0, though, and -0 added to that is 0: rows of nothing but -0 stay that, as in a loop.
     """
     n = len(start)
     rows = np.concatenate([np.arange(n), row])
     weights = np.concatenate([start, values])
-    return np.bincount(rows, weights, minlength=n).astype(np.float64, copy=False)
+    total = np.bincount(rows, weights, minlength=n).astype(np.float64, copy=False)
+    is_minus = np.signbit(start) & (total == 0.0)
+    if is_minus.any():
+        is_minus[row[(values != 0.0) | ~np.signbit(values)]] = False
+        total[is_minus] = -0.0
+    return total
 
 
 def blocks(sizes: NDArray[np.integer], limit: int) -> list[slice]:

@@ -41,8 +41,8 @@ def _candidates(vertices, faces, face, x0, y0, size, n_columns, n_rows, cell_ind
     margin = EDGE_TOLERANCE * (np.abs(bx) + np.abs(by) + np.abs(cx) + np.abs(cy))
     low = ay + np.minimum(np.minimum(0.0, by), cy) - margin
     high = ay + np.maximum(np.maximum(0.0, by), cy) + margin
-    first_row = np.maximum(np.floor((low - y0) / size).astype(np.int64), 0)
-    last_row = np.minimum(np.floor((high - y0) / size).astype(np.int64), n_rows - 1)
+    first_row = np.maximum(_cell_of((low - y0) / size, n_rows), 0)
+    last_row = np.minimum(_cell_of((high - y0) / size, n_rows), n_rows - 1)
     n_crossed = np.where(flat, 0, np.maximum(last_row - first_row + 1, 0))
     of, row = expanded(first_row, n_crossed)
     ax, ay, bx, by, cx, cy = (side[of] for side in (ax, ay, bx, by, cx, cy))
@@ -63,12 +63,16 @@ def _candidates(vertices, faces, face, x0, y0, size, n_columns, n_rows, cell_ind
         right = np.where(meets, np.maximum(right, np.maximum(x1, x2)), right)
     met = np.flatnonzero(left <= right)
     of, row, margin, left, right = of[met], row[met], margin[met], left[met], right[met]
-    first = np.maximum(np.floor((left - margin - x0) / size).astype(np.int64), 0)
-    last = np.minimum(np.floor((right + margin - x0) / size).astype(np.int64), n_columns - 1)
+    first = np.maximum(_cell_of((left - margin - x0) / size, n_columns), 0)
+    last = np.minimum(_cell_of((right + margin - x0) / size, n_columns), n_columns - 1)
     start = np.minimum(first, n_columns)
     begin = cell_indptr[row * n_columns + start]
     end = cell_indptr[row * n_columns + np.maximum(last + 1, start)]
     return face[of], begin, end - begin
+
+
+def _cell_of(place, n):
+    return np.floor(np.clip(place, -1.0, float(n))).astype(np.int64)
 
 
 def _cover(vertices, faces, points, face, p, face_of, weights):

@@ -1,7 +1,7 @@
-"""The one-ring-mean update in rounds; see :mod:`wavelet_core._kernels.update`.
+"""The updates on whole arrays; see :mod:`wavelet_core._kernels.update`.
 
-A row reads what rows before it left on the same even vertices. A row that comes before all others
-with which it shares one can be applied, and all such rows at once.
+The one-ring mean goes in rounds: a row reads what rows before it left on the same even vertices. A
+row that comes before all others with which it shares one can be applied, and all such rows at once.
 """
 
 from __future__ import annotations

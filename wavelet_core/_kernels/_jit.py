@@ -201,11 +201,22 @@ def _stamp_of_all_kernels() -> tuple[tuple[str, int, int], ...]:
 
 
 def n_threads() -> int:
-    """Threads for the kernels: the environment's wish, else the number of cores."""
-    wish = os.environ.get(THREADS_VARIABLE, "")
-    if wish.isdigit() and int(wish) > 0:
-        return int(wish)
-    return os.cpu_count() or 1
+    """Return how many threads kernels take: the environment's wish, else the number of cores.
+
+    Raises
+    ------
+    OptionError
+        The environment wishes for what is no number of threads.
+    """
+    wish = os.environ.get(THREADS_VARIABLE, "").strip()
+    if not wish:
+        return os.cpu_count() or 1
+    if not (wish.isascii() and wish.isdigit() and int(wish) > 0):
+        raise OptionError(
+            f"{THREADS_VARIABLE} is {wish!r}; give a whole number of 1 or more, or leave the "
+            "variable out."
+        )
+    return int(wish)
 
 
 def run_in_ranges(step: Kernel, n_items: int, *arguments: Any, called: str = "") -> None:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ._jit import kernel
+from ._jit import kernel, njit
 
 # a point this far outside a face, in barycentric coordinates, still counts as on it
 EDGE_TOLERANCE = 1e-9
@@ -29,6 +29,13 @@ def sort_into_cells(plan, x0, y0, size, n_columns, n_rows, cell_indptr, order):
         cursor[cell[p]] += 1
 
 
+# The row or column of cells that holds a place, given in cells from the first; -1 before, n behind.
+# Cut off before it is whole: 64 bits do not hold what lies far enough out.
+@njit
+def cell_of(place, n):
+    return math.floor(min(max(place, -1.0), float(n)))
+
+
 # vertices (n, >= 2), points (n_points, >= 2) float64, of which x and y count; faces (n_faces, 3)
 # int; face_of (n_points,) int64, -1 on entry: filled with the first face that covers each point,
 # weights (n_points, 2) with those of its second and third corner
@@ -46,8 +53,8 @@ def cover_points(
             continue
         margin = EDGE_TOLERANCE * (abs(bx) + abs(by) + abs(cx) + abs(cy))
         low, high = ay + min(0.0, by, cy) - margin, ay + max(0.0, by, cy) + margin
-        first_row = max(math.floor((low - y0) / size), 0)
-        last_row = min(math.floor((high - y0) / size), n_rows - 1)
+        first_row = max(cell_of((low - y0) / size, n_rows), 0)
+        last_row = min(cell_of((high - y0) / size, n_rows), n_rows - 1)
         for row in range(first_row, last_row + 1):
             bottom, top = y0 + row * size - margin, y0 + (row + 1) * size + margin
             left, right = np.inf, -np.inf
@@ -69,8 +76,8 @@ def cover_points(
                 left, right = min(left, x1, x2), max(right, x1, x2)
             if left > right:
                 continue
-            first = max(math.floor((left - margin - x0) / size), 0)
-            last = min(math.floor((right + margin - x0) / size), n_columns - 1)
+            first = max(cell_of((left - margin - x0) / size, n_columns), 0)
+            last = min(cell_of((right + margin - x0) / size, n_columns), n_columns - 1)
             for k in range(
                 cell_indptr[row * n_columns + min(first, n_columns)],
                 cell_indptr[row * n_columns + max(last + 1, min(first, n_columns))],

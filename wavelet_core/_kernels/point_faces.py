@@ -80,8 +80,7 @@ def class_of_pair(k, n_known, m, offset_x, offset_y, squared):
     return 7 if k >= m // 2 else 6
 
 
-# Put rows of `keys` [first, last) in order, small ones by insertion; the sort is stable.
-# order (n,) int32 moves along
+# Put `keys` [first, last) in order by insertion, which is stable; order moves along
 @inlined
 def sort_piece(first, last, keys, order):
     for i in range(first + 1, last):

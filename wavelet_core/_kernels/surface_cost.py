@@ -142,8 +142,7 @@ def cover_on_edge(j, size, along):
 @inlined
 def legal_targets(
     v, size, rule, along, only, is_barred, ring, ring_x, ring_y, ring_z, diameter, measured,
-    limits_tolerance,
-    height_step, order, own_error, distance, cover, cover_weights,
+    tolerance, height_step, order, own_error, distance, cover, cover_weights,
 ):  # fmt: skip
     n_legal = 0
     is_outline = rule != NONE
@@ -166,7 +165,7 @@ def legal_targets(
             here += error * error
             if i == 0:
                 here_z = here
-        if here_z > limits_tolerance:
+        if here_z > tolerance:
             continue
         own_error[j] = here
         distance[j] = ring_x[j] ** 2 + ring_y[j] ** 2
@@ -343,7 +342,8 @@ def update_corners(
         fit = at_a * ring_z[j, i] + at_b * ring_z[b, i] + at_c * ring_z[c, i]
         detail[i] = z[v, i] - fit
         change += (fit + own_share * detail[i] - measured[v, i]) ** 2
-    for corner, share in ((j, share_a), (b, share_b), (c, share_c)):
+    # of one type also where the loop that calls this is run by Python
+    for corner, share in ((np.int64(j), share_a), (np.int64(b), share_b), (np.int64(c), share_c)):
         u = ring[corner]
         following, preceding = star_corners(corner, size, n_sides, spoke)
         stiffness = vertex_weight[u]

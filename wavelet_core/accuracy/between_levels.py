@@ -8,6 +8,7 @@ from scipy.sparse import csr_array
 
 from .._validate import FloatArray
 from ..errors import OptionError
+from ..lifting.options import as_whole
 from ..lifting.pyramid import Pyramid
 from ..lifting.step import analyse_level
 from ..mesh.collapse import even_positions, merge_map, merged_faces
@@ -35,7 +36,7 @@ def mesh_of_size(pyramid: Pyramid, n_vertices: int) -> PartialMesh:
     Raises
     ------
     OptionError
-        Fewer vertices than the coarsest level has.
+        Fewer vertices than the coarsest level has, or no whole number of them.
 
     Notes
     -----
@@ -44,19 +45,22 @@ def mesh_of_size(pyramid: Pyramid, n_vertices: int) -> PartialMesh:
     condition only loosens with every collapse that is left out. Predict and update are those of
     the pyramid, applied to the part.
     """
-    if n_vertices < pyramid.n_vertices(0):
+    wanted = as_whole(n_vertices)
+    if wanted is None:
+        raise OptionError("{0} is {given}; give a whole number.", "n_vertices", given=n_vertices)
+    if wanted < pyramid.n_vertices(0):
         raise OptionError(
             "the coarsest level has {coarsest} vertices, more than {0} {given}; analyse the input "
             "anew with a smaller target.",
             "n_vertices",
             coarsest=pyramid.n_vertices(0),
-            given=n_vertices,
+            given=wanted,
         )
     level = next(
-        (k for k in range(pyramid.n_levels) if pyramid.n_vertices(k) >= n_vertices),
+        (k for k in range(pyramid.n_levels) if pyramid.n_vertices(k) >= wanted),
         pyramid.n_levels,
     )
-    n_out = pyramid.n_vertices(level) - n_vertices
+    n_out = pyramid.n_vertices(level) - wanted
     mesh = pyramid.mesh(level)
     if n_out <= 0:
         return PartialMesh(mesh, pyramid.vertex_ids(level), level)

@@ -157,7 +157,7 @@ def band_energies(
     ((600, 3), True)
     """
     columns = _columns_of(pyramid, channel)
-    integrals = _integrals(pyramid, _sharing)
+    integrals = _integrals(pyramid, np.ones(pyramid.n_vertices(pyramid.n_levels)), _sharing)
     energies = np.empty((pyramid.n_vertices(0), 0))
     for level, (step, even, sharing) in enumerate(_steps_upwards(pyramid)):
         squared = (step.details[:, columns] ** 2).sum(axis=1)
@@ -204,7 +204,7 @@ def band_components(
     True
     """
     (column,) = _columns_of(pyramid, channel or "z")
-    integrals = _integrals(pyramid)
+    integrals = _integrals(pyramid, pyramid.integrals(pyramid.n_levels))
     locked = _locked_by_level(pyramid)
     parts = pyramid.coarse[:, [column]]
     for level, (step, even, _) in enumerate(_steps_upwards(pyramid)):
@@ -329,10 +329,12 @@ def _sharing(step: Step, n_even: int) -> csr_array:
 
 
 def _integrals(
-    pyramid: Pyramid, filter_of: Callable[[Step, int], csr_array] = Step.prediction
+    pyramid: Pyramid,
+    finest: FloatArray,
+    filter_of: Callable[[Step, int], csr_array] = Step.prediction,
 ) -> list[FloatArray]:
-    """Return, for level 0 to L, how many input vertices each vertex stands for (Eq. 47)."""
-    by_level = [np.ones(pyramid.n_vertices(pyramid.n_levels))]
+    """Return, for level 0 to L, what each vertex stands for of ``finest``, that of L (Eq. 47)."""
+    by_level = [finest]
     for step in reversed(pyramid.steps):
         finer = by_level[-1]
         even = even_positions(step.odd, len(finer))

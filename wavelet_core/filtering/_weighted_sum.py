@@ -117,7 +117,7 @@ class WeightedSum:
         n_bands = -(-levels // LEVELS_PER_BAND)
         self._of_pyramids = np.zeros((n, n_bands * OF_PYRAMIDS.n_elements))
         self._divergence = np.zeros(self._of_pyramids.shape[1])
-        self.result = values.copy()
+        self.values, self.result = values, values.copy()
 
     def fit(self, transform: Transform, gains: list[FloatArray]) -> None:
         """Take in the details of one pyramid, and their divergence."""

@@ -20,6 +20,7 @@ from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
 from .noise.model import Noise, RangeOption, noise_of
 from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
+from .noise.rounding import FILL_ROUNDS, ROUNDS_OF_SHARE, without_terraces
 from .noise.white import check_sigma, noise_columns, noise_gains
 from .undecimated import UndecimatedBank
 
@@ -234,12 +235,28 @@ class _Decompositions:
         rounds += 2 ** (plain.n_scales - 1)
         n_fitted = min(n, _weighted_sum.MAX_FITTED)
         n_times, n_blocks = 1 if n == n_fitted else 2, n_fitted // ROWS_AT_ONCE
-        meter.begin(start + OF_BANK, 0.99, len(weighted) * (n_times * rounds + n_blocks))
+        n_steps = len(weighted) * (n_times * rounds + n_blocks)
+        n_steps += sum(FILL_ROUNDS + ROUNDS_OF_SHARE for w in weighted if w.noise.rounding.step > 0)
+        meter.begin(start + OF_BANK, 0.99, n_steps)
         for one in weighted:
             bank = plain
             if not one.noise.is_plain:
                 bank = plain.for_noise(one.noise.columns(n, self._seed))
             one.finish(bank)
+            if one.noise.rounding.step > 0:
+                self._fill_terraces(bank, one)
+
+    def _fill_terraces(self, bank: UndecimatedBank, one: WeightedSum) -> None:
+        """Take out of a result what rounding left, but where values are no rounded ones."""
+        is_fixed = np.zeros(self._mesh.n_vertices, dtype=bool)
+        if self._locked is not None:
+            is_fixed |= np.asarray(self._locked, dtype=bool)
+        if one.noise.outliers is not None:
+            is_fixed[one.noise.outliers] = True
+        sigma = one.noise.sigma * (1.0 if one.noise.relative is None else one.noise.relative)
+        one.result = without_terraces(
+            bank, one.values, one.result, one.noise.rounding, sigma, is_fixed
+        )
 
     def _gains(self, transform: Transform, noise: Noise) -> list[FloatArray]:
         """Return how noise reaches the details of a pyramid."""

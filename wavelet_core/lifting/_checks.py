@@ -40,6 +40,7 @@ def check_parts(
     for level, step in enumerate(steps):
         n_vertices = _check_step(level, step, n_vertices, len(names))
     _require(faces.ndim == 2 and faces.shape[1] == 3, f"faces of shape {faces.shape}")
+    _require(_are_whole(faces), "faces that are no whole numbers")
     _require(_in_range(faces, n_vertices), "faces with a vertex out of range")
     a, b, c = faces.T
     _require(not ((a == b) | (b == c) | (c == a)).any(), "a face with a vertex twice")
@@ -62,6 +63,8 @@ def _check_step(level: int, step: Step, n_even: int, n_channels: int) -> int:
     n_odd = len(step.odd)
     n_fine = n_even + n_odd
     require(step.odd.shape == step.target.shape == (n_odd,) and n_odd > 0, "no odd vertices")
+    ids = (step.odd, step.target, step.indptr, step.indices)
+    require(_are_whole(*ids), "ids that are no whole numbers")
     require(_in_range(step.odd, n_fine), "an odd vertex out of range")
     require(_in_range(step.target, n_fine), "a target out of range")
     is_odd = np.zeros(n_fine, dtype=bool)
@@ -86,6 +89,10 @@ def _check_step(level: int, step: Step, n_even: int, n_channels: int) -> int:
 
 def _in_range(ids: NDArray, n: int) -> bool:
     return ids.size == 0 or bool(ids.min() >= 0 and ids.max() < n)
+
+
+def _are_whole(*arrays: NDArray) -> bool:
+    return all(array.size == 0 or array.dtype.kind in "iu" for array in arrays)
 
 
 def _require(holds: bool, fault: str, level: int | None = None) -> None:

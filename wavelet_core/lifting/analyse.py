@@ -140,8 +140,8 @@ def analyse(
     Raises
     ------
     MeshError
-        The mesh is no manifold, or, with ``signal="z"``, has a face that is not
-        counter-clockwise in plan.
+        The mesh has no vertices or is no manifold, or, with ``signal="z"``, it has a face that is
+        not counter-clockwise in plan.
     OptionError
         A value out of bounds, a name that is not listed above, or options that contradict each
         other: an option of another partition, an update beside a joined design, ``"plane"`` with
@@ -185,6 +185,8 @@ def analyse(
         removal_fraction=removal_fraction,
         outline_tolerance=outline_tolerance,
     )
+    if mesh.n_vertices == 0:
+        raise MeshError("the mesh has no vertices; there is nothing to analyse.")
     announce_engine(mesh.n_vertices)
     with fitting_engine(mesh.n_vertices):
         return _Analysis(

@@ -62,7 +62,7 @@ class Transform:
     def from_pyramid(cls, pyramid: Pyramid, tick: Callable[[], None] = _nothing) -> Transform:
         """Return the transform of a pyramid."""
         n_fine = pyramid.n_vertices(pyramid.n_levels)
-        integrals = np.ones(n_fine)
+        integrals = pyramid.integrals(pyramid.n_levels)
         locked = np.zeros(n_fine, dtype=bool) if pyramid.locked is None else pyramid.locked
         steps = []
         for step in reversed(pyramid.steps):

@@ -302,14 +302,26 @@ def _fraction(
 
 
 def checked_weights(weights: Sequence[float] | None, n_attributes: int) -> tuple[float, ...]:
+    """Return the weight of each attribute, 1 where none is given.
+
+    Raises
+    ------
+    OptionError
+        Not one finite number of 0 or more for each.
+    """
     if weights is None:
         return (1.0,) * n_attributes
-    numbers = tuple(_as_float(weight) for weight in weights)
+    given: Any = weights
+    try:
+        given = tuple(weights)
+        numbers = tuple(map(_as_float, given))
+    except TypeError:  # a single number, which is no sequence
+        numbers = (math.nan,)
     if len(numbers) != n_attributes or not all(0 <= number < math.inf for number in numbers):
         raise OptionError(
             "{0} are {given}; give {n_attributes} numbers of 0 or more.",
             "attribute_weights",
-            given=tuple(weights),
+            given=given,
             n_attributes=n_attributes,
         )
     return numbers
@@ -358,7 +370,7 @@ def _as_float(value: Any) -> float:
     """Return a number as float; NaN, which no bound admits, for what is none."""
     try:
         return math.nan if isinstance(value, str) else float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return math.nan
 
 

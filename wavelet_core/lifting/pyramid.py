@@ -350,12 +350,12 @@ class Pyramid:
         option : str
             The parameter that names it, for the error.
         """
-        if not 0 <= level < self.n_levels:
+        if level not in range(self.n_levels):
             raise OptionError(
-                "there are no details at level {level}; they are at 0 to {last}.",
+                "there are no details at level {level}; {where}.",
                 option,
                 level=level,
-                last=self.n_levels - 1,
+                where=self._where_details_are(),
             )
 
     def _as_gain(self, gain: float | Sequence[float], level: int | str) -> FloatArray:
@@ -413,17 +413,21 @@ class Pyramid:
     # -- walks through the levels ----------------------------------------------------------------
 
     def _require_level(self, level: int) -> None:
-        if not 0 <= level <= self.n_levels:
+        if level not in range(self.n_levels + 1):
             raise PyramidError(
                 f"there is no level {level}; the levels are 0 to {self.n_levels}.", level
             )
 
     def _require_step(self, level: int) -> None:
-        if not 0 <= level < self.n_levels:
+        if level not in range(self.n_levels):
             raise PyramidError(
-                f"there are no details at level {level}; they are at 0 to {self.n_levels - 1}.",
-                level,
+                f"there are no details at level {level}; {self._where_details_are()}.", level
             )
+
+    def _where_details_are(self) -> str:
+        if self.n_levels == 0:
+            return "this pyramid has none, since nothing was removed"
+        return f"they are at 0 to {self.n_levels - 1}"
 
     def _in_input(self, ids: NDArray[np.int32]) -> IntArray:
         """Return ids of the input from those of the finest level."""

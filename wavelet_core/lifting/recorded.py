@@ -310,7 +310,7 @@ def pyramid_of(
         if part.ids is not None:
             ids = ids[level.ids]
             _require(np.array_equal(ids, part.ids), "a part that begins at no level")
-            level = RecordedLevel(_start_of(part, mesh, columns, is_locked, frame, manner), manner)
+            level = RecordedLevel(_start_of(part, mesh, is_locked, frame, manner), manner)
         done = 1.0 - level.n_vertices / mesh.n_vertices
         steps.extend(replay(level, part.answers, part_of_progress(progress, done, 1.0)))
     ids = ids[level.ids]
@@ -456,12 +456,12 @@ def _begin(
     manner: Manner,
 ) -> dict[str, Any]:
     """Return what the part that begins at a level must know of it."""
-    is_empty = slice(None) if manner.with_update else slice(0)
+    stored = slice(None) if manner.with_update else slice(0)
     return {
         "ids": ids,
         "faces": level.faces,
-        "heights": level.local_heights[is_empty],
-        "integrals": level.integrals[is_empty],
+        "heights": level.local_heights[stored],
+        "integrals": level.integrals[stored],
         "unchanged": columns[ids[_unchanged(locked[ids], manner)]],
     }
 
@@ -479,14 +479,14 @@ def _part_start(
         _require(begun["unchanged"].shape == (n, n_channels), "columns of another length")
         heights = begun["unchanged"] * frame.weights - frame.z_origin
         integrals = np.ones(n)
-    _require(heights.shape == (n, n_channels) and integrals.shape == (n,), "heights")
+    is_sound = heights.shape == (n, n_channels) and integrals.shape == (n,)
+    _require(is_sound, "heights or integrals of another length")
     return Start(plan - frame.centre, heights, integrals, begun["faces"], locked)
 
 
 def _start_of(
     part: RecordPart,
     mesh: TriangleMesh,
-    columns: FloatArray,
     locked: NDArray[np.bool_],
     frame: Frame,
     manner: Manner,

@@ -52,8 +52,8 @@ def gaps_of(plan: FloatArray, faces: IntArray) -> PointGaps:
     -----
     **Our choice:** an edge spans a gap from `GAP_FACTOR` times the 95th percentile of the distance
     between a point and its nearest neighbour, which is the shortest of its Delaunay edges. In dense
-    forest, and on tiles with the usual overlaps, that leaves less than 1 % of the area; of towns
-    with canals the water.
+    forest, and on tiles with the usual overlaps, that takes less than 1 % of the area for gaps; in
+    towns with canals, the water.
     """
     nearest = np.full(len(plan), np.inf)
     longest, areas = np.empty(len(faces)), np.empty(len(faces))
@@ -107,13 +107,16 @@ def faces_within(
         No face is left.
     """
     if not max_edge > 0:
-        raise OptionError(f"max_edge must be a length above 0, and is {max_edge}.")
+        raise OptionError("{0} is {given}; give a length above 0.", "max_edge", given=max_edge)
     is_long = _is_long(plan, faces, max_edge)
     gone = _open_to_outside(faces, is_long, len(plan)) if from_outline else is_long.any(axis=1)
     if gone.all():
         raise MeshError(
-            f"every face has an edge longer than max_edge = {max_edge:g}, so no surface is left; "
-            "give a larger one."
+            "every face has an edge longer than {0} = {given:g}, so no surface is left; give a "
+            "larger one.",
+            None,
+            "max_edge",
+            given=max_edge,
         )
     return faces[~gone]
 

@@ -48,10 +48,12 @@ def surface_errors(
     Returns
     -------
     ndarray, shape (n_points,)
-        z of the point minus z of the surface at its x, y; NaN where no face covers it. Where
+        z of the point minus z of the surface at its x, y; NaN where no face covers it, as where
+        x or y is no finite number. Where
         faces overlap in plan, the first one counts. A vertex that no face uses, such as a single
         cell among holes, is surface at its own place.
     """
+    points = np.asarray(points, dtype=np.float64)
     cover = cover_of(mesh, points[:, :2]) if cover is None else cover
     z = mesh.vertices[:, 2]
     a, b, c = mesh.faces[cover.face].T
@@ -179,8 +181,13 @@ def cover_of(mesh: TriangleMesh, plan: FloatArray) -> Cover:
     ----------
     mesh : TriangleMesh
     plan : ndarray, shape (n_points, 2)
-        x and y of the points.
+        x and y of the points; one that is not finite lies nowhere.
     """
+    is_place = np.isfinite(plan).all(axis=1)
+    if not is_place.all():
+        rows = np.flatnonzero(is_place)
+        cover = cover_of(mesh, plan[rows])
+        return cover._replace(point=rows[cover.point])
     face_of = np.full(len(plan), -1, dtype=np.int64)
     weights = np.empty((len(plan), 2))
     if mesh.n_faces > 0 and len(plan) > 0:

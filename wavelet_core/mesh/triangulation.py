@@ -46,16 +46,21 @@ def merge_duplicates(points: FloatArray, rule: str = "lowest") -> Merged:
         There is no such rule.
     """
     if rule not in _SIGN_OF_RULE:
-        raise OptionError(f"duplicates must be one of {', '.join(_SIGN_OF_RULE)}, and is {rule!r}.")
+        raise OptionError(
+            "{0} is {given!r}; give one of {choices}.",
+            "duplicates",
+            given=rule,
+            choices=", ".join(_SIGN_OF_RULE),
+        )
     n_points = len(points)
     order = np.lexsort((_SIGN_OF_RULE[rule] * points[:, 2], points[:, 1], points[:, 0]))
     x, y = points[order, 0], points[order, 1]
     is_first = np.ones(n_points, dtype=bool)
     is_first[1:] = (x[1:] != x[:-1]) | (y[1:] != y[:-1])
     group_of_sorted = np.cumsum(is_first) - 1
-    lowest = order[is_first]
-    kept = np.sort(lowest)
-    position_of_group = np.searchsorted(kept, lowest)
+    chosen = order[is_first]
+    kept = np.sort(chosen)
+    position_of_group = np.searchsorted(kept, chosen)
     representative = np.empty(n_points, dtype=np.int64)
     representative[order] = position_of_group[group_of_sorted]
     return Merged(kept, representative)

@@ -50,7 +50,7 @@ class VertexState(NamedTuple):
             locked=locked,
             stays=stays,
             integrals=np.ones(n),
-            key=_scattered(n),
+            key=scattered(n),
             cost=np.full(n, -np.inf),
             target=np.full(n, -1, dtype=np.int32),
             is_stale=np.ones(n, dtype=bool),
@@ -108,7 +108,7 @@ class FaceState(NamedTuple):
         return FaceState._make(array.copy() for array in self)
 
 
-def _scattered(n_vertices: int) -> NDArray[np.uint32]:
+def scattered(n_vertices: int) -> NDArray[np.uint32]:
     """Return a different number for each vertex, without order (a Weyl sequence, mixed)."""
     key = np.arange(n_vertices, dtype=np.uint32) * np.uint32(2654435761)
     return (key ^ (key >> np.uint32(15))) * np.uint32(2246822519)

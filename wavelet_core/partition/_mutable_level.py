@@ -403,6 +403,12 @@ class SurfaceLevel:
         self._rank_anew(odd[~is_linked])
         return odd[is_linked]
 
+    def has_collapse(self, norm: str) -> bool:
+        """Return whether any vertex could go, whatever error it left; all are ranked anew."""
+        self._rank_anew(np.flatnonzero(self._vertices.lives).astype(np.int32))
+        self.rank(norm, np.inf, np.inf)
+        return len(self._known(np.inf)[0]) > 0
+
     def _rank_anew(self, slots: NDArray[np.int32]) -> None:
         vertices = self._vertices
         vertices.cost[slots] = np.inf  # looked at whatever the cutoff

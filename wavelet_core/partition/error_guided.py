@@ -100,13 +100,17 @@ class SurfaceRules(NamedTuple):
         """Return what the sum of the squared errors may still grow by."""
         if self.max_rms == np.inf:
             return np.inf
-        return self.max_rms**2 * level.n_input - level.squared_errors()
+        return self._most_squared(level) - level.squared_errors()
 
     def are_kept_by(self, level: SurfaceLevel) -> bool:
         """Whether the errors of all input vertices keep the tolerances."""
-        if self.max_rms < np.inf and level.squared_errors() > self.max_rms**2 * level.n_input:
+        if self.max_rms < np.inf and level.squared_errors() > self._most_squared(level):
             return False
         return level.largest_error() <= self.max_error
+
+    def _most_squared(self, level: SurfaceLevel) -> float:
+        """Return the largest sum of squared errors that the mean allows."""
+        return self.max_rms * self.max_rms * level.n_input  # inf where ** would overflow
 
 
 class SurfaceAnalysis(NamedTuple):
@@ -196,7 +200,8 @@ def analyse_surface(
             break
         choice = _choose(level, rules, cutoff)
         if choice is None:
-            stopped_by = "tolerance" if rules.has_tolerance else "nothing_left"
+            is_kept = rules.has_tolerance and level.has_collapse(rules.norm)
+            stopped_by = "tolerance" if is_kept else "nothing_left"
             break
         report(level.n_vertices)
         taken = _take_step(level, rules, choice.odd, recorder)

@@ -39,7 +39,7 @@ class PartitionRow(NamedTuple):
     """One partition: a row of :data:`PARTITIONS`.
 
     name : str, what `analyse` takes
-    make : callable, from a PartitionInput to a orderings.Partition
+    make : callable, from a PartitionInput to an orderings.Partition
     help : str, one line for lists
     equation : str, where the paper has it; empty for what is beyond the paper
     options : tuple of str, the parameters of `analyse` that it, and no other, looks at

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._validate import counted
+
 #: Reason codes, and what each means.
 REASONS = {
     "target": "the number of vertices that was asked for is reached",
@@ -47,10 +49,11 @@ class StopRecord(NamedTuple):
             (self.n_inner, "inside, where no collapse is legal or within the tolerance"),
         )
         left = "; ".join(f"{count:,} {kind}" for count, kind in kinds if count)
-        size = f"{self.n_vertices:,}"
+        verb = "is" if self.n_vertices == 1 else "are"
+        sentence = f"{counted(self.n_vertices, 'vertex', 'vertices')} {verb} left"
         if self.misses_target:
-            size += f" of {self.target_vertices:,} asked for"
-        sentence = f"{size} vertices are left: {REASONS[self.reason]}"
+            sentence += f", where {self.target_vertices:,} were asked for"
+        sentence += f": {REASONS[self.reason]}"
         return f"{sentence} ({left})." if self.reason == "nothing_left" else f"{sentence}."
 
 

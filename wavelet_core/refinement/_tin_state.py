@@ -32,6 +32,7 @@ from .._kernels.refine_tin import (
 )
 from .._validate import FloatArray, IntArray
 from ..mesh.half_edges import half_edges_of
+from ..partition._level_state import scattered
 
 #: Vertices with more neighbours than this are not taken out: they claim too much of the TIN. On
 #: three DEMs 10 leaves up to 0.3 % more vertices within a tolerance, 25 as many.
@@ -125,7 +126,7 @@ class TinState:
         self.points = Points(x, y, columns, strict, np.cumsum(count) - count, count, pool)
         self.objective = objective
         self._n_used = len(listed)
-        self._key = _scattered(len(vertex_ids))
+        self._key = scattered(len(vertex_ids))
         self._lives = np.ones(len(vertex_ids), dtype=bool)
 
     @property
@@ -373,9 +374,3 @@ class TinState:
 
 def _before(half_edge: IndexArray) -> IndexArray:
     return half_edge - 1 + 3 * (half_edge % 3 == 0)
-
-
-def _scattered(n: int) -> NDArray[np.uint32]:
-    """Return a different number for each vertex, without order."""
-    key = np.arange(n, dtype=np.uint32) * np.uint32(2654435761)
-    return (key ^ (key >> np.uint32(15))) * np.uint32(2246822519)

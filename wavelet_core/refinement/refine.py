@@ -13,7 +13,7 @@ from .._kernels.refine_tin import Objective
 from .._validate import FloatArray, IntArray
 from ..accuracy.fitted_heights import fitted
 from ..errors import MeshError, OptionError
-from ..lifting.options import checked_weights
+from ..lifting.options import as_whole, checked_weights
 from ..lifting.signal import height_weights
 from ..mesh.location import Cover, cover_of, surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
@@ -160,6 +160,7 @@ def refine(
     """
     ids = _checked_ids(vertex_ids, mesh, original)
     limits = _checked_limits(max_error, original)
+    norm = NORMS.find(norm).name
     _require_sense(norm, rounds, None if limits is None else float(limits.min()), max_rms)
     if mesh.attribute_names != original.attribute_names:
         raise OptionError(
@@ -321,7 +322,8 @@ class _Work:
         if self._task.max_rms is None:
             return np.inf
         squared = float(self._state.face_errors().squared_z.sum())
-        return self._task.max_rms**2 * self._n_points - squared
+        most = self._task.max_rms * self._task.max_rms  # inf where ** would overflow
+        return most * self._n_points - squared
 
     def _improve(self, number: int, most: int, n_replaced: int = 0, n_removed: int = 0) -> None:
         """Turn edges, move vertices, turn edges; note what the TIN is like."""
@@ -467,9 +469,11 @@ def _require_sense(
     max_error: float | None,
     max_rms: float | None,
 ) -> None:
-    NORMS[norm]  # refuses another name
-    if rounds is not None and rounds < 0:
-        raise OptionError("{0} is {given}; give 0 or more.", "rounds", given=rounds)
+    n_rounds = 0 if rounds is None else as_whole(rounds)
+    if n_rounds is None or n_rounds < 0:
+        raise OptionError(
+            "{0} is {given}; give a whole number of 0 or more.", "rounds", given=rounds
+        )
     for name, value, due in (("max_error", max_error, "max"), ("max_rms", max_rms, "rms")):
         if value is None:
             continue

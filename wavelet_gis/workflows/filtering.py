@@ -353,7 +353,7 @@ def _in_file(noise: Noise, unit: float, metre: float) -> Noise:
     return replace(
         noise,
         sigma=noise.sigma / unit,
-        quantum=noise.quantum / unit,
+        rounding=noise.rounding._replace(step=noise.rounding.step / unit),
         reach=noise.reach / metre,
     )
 

@@ -75,6 +75,13 @@ def test_fewer_than_the_coarsest_has_is_refused() -> None:
         mesh_of_size(pyramid, pyramid.n_vertices(0) - 1)
 
 
+@pytest.mark.parametrize("size", [250.5, float("nan"), "300"])
+def test_a_size_that_is_no_whole_number_is_refused(size: object) -> None:
+    """It ended in a TypeError of a slice."""
+    with pytest.raises(OptionError, match=r"n_vertices is .*; give a whole number"):
+        mesh_of_size(analyse(hills(), levels=2), size)  # type: ignore[arg-type]
+
+
 def test_more_than_the_input_has_is_the_input() -> None:
     pyramid = analyse(hills(), levels=2)
     assert mesh_of_size(pyramid, 10**6).mesh.n_vertices == hills().n_vertices

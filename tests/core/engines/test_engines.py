@@ -93,13 +93,37 @@ def test_holes_that_an_outline_tolerance_fills_are_the_same_bytes(seed, size):
     assert bytes_of(ours) == bytes_of(theirs)
 
 
-@pytest.mark.parametrize("size", [{"max_error": 1e200}, {"outline_tolerance": 1e200}])
+@pytest.mark.parametrize("design", DESIGNS)
+def test_heights_of_minus_zero_are_the_same_bytes(design):
+    """Whole arrays made 0 of them where the loops left them as they were."""
+    x, y = np.arange(16.0), np.arange(14.0)
+    heights = np.random.default_rng(3).choice([-1.0, -0.0, -0.0, 0.0, 1.0], (14, 16))
+    mesh = TriangleMesh.from_grid(heights, x, y)
+    assert (np.signbit(mesh.vertices[:, 2]) & (mesh.vertices[:, 2] == 0)).any()
+    ours, theirs = both(lambda: analyse(mesh, **DESIGNS[design]))
+    assert bytes_of(ours) == bytes_of(theirs)
+    assert ours[-1].vertices.tobytes() == theirs[-1].vertices.tobytes()
+
+
+@pytest.mark.parametrize(
+    "size", [{"max_error": 1e200}, {"max_rms": 1e200}, {"outline_tolerance": 1e200}]
+)
 def test_a_tolerance_beyond_all_bounds_is_one_that_nothing_breaks(size):
     """Its square is no double, which ended in an OverflowError."""
     mesh = MESHES["hills"]()
     ours, theirs = both(lambda: analyse(mesh, target_vertices=8, **size))
     assert ours.mesh(0).n_vertices <= 8
     assert bytes_of(ours) == bytes_of(theirs)
+
+
+@pytest.mark.parametrize("design", [{}, {"norm": "max"}, {"prediction": "GLORMP"}])
+def test_plain_loops_run_where_numba_is_there_too(design):
+    """They ended in a TypingError: what they call is compiled, for a tuple of one type."""
+    mesh = synthetic.hills(7, 8)
+    with engine("loops"):
+        looped = analyse(mesh, levels=4, **design)
+    with engine("arrays"):
+        assert bytes_of(analyse(mesh, levels=4, **design)) == bytes_of(looped)
 
 
 @pytest.mark.parametrize("mesh_name", MESHES)

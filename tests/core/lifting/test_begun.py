@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from wavelet_core import OptionError, TriangleMesh, analyse, synthetic
+from wavelet_core import OptionError, TriangleMesh, analyse, band_components, synthetic
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
+from wavelet_core.lifting.linear_map import Transform
 from wavelet_core.metrics import level_errors, surface_errors
 
 MESH = synthetic.hills(20, 30)
@@ -26,6 +27,22 @@ def test_two_analyses_one_after_the_other_are_one_as_to_their_integrals():
     coarse = analyse(fine[0], levels=3, integrals=fine.integrals(0))
     sums = [p.integrals(k) @ p[k].vertices[:, 2] for p in (fine, coarse) for k in range(len(p))]
     assert np.allclose(sums, MESH.vertices[:, 2].sum())
+
+
+def test_the_linear_map_is_that_of_these_integrals():
+    """It began with ones: what was denoised or damped came back with other coefficients."""
+    pyramid = analyse(MESH, levels=4, integrals=WEIGHTS)
+    coarse, details = Transform.from_pyramid(pyramid).analyse(MESH.vertices[:, 2:])
+    assert np.allclose(coarse, pyramid.coarse, rtol=0, atol=1e-9)
+    for step, detail in zip(pyramid.steps, details, strict=True):
+        assert np.allclose(detail, step.details, rtol=0, atol=1e-9)
+
+
+def test_base_and_bands_sum_to_the_mesh():
+    """They were synthesised with integrals of one, and the sum was metres off."""
+    components = band_components(analyse(MESH, levels=4, integrals=WEIGHTS))
+    total = components.base + components.bands.sum(axis=1)
+    assert np.allclose(total, MESH.vertices[:, 2], rtol=0, atol=1e-9)
 
 
 def test_ones_are_the_default():

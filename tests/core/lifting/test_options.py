@@ -161,12 +161,21 @@ def test_what_is_no_whole_number_is_refused(option, value):
 
 
 @pytest.mark.parametrize("option", ["max_error", "max_rms", "bending_weight", "removal_fraction"])
-@pytest.mark.parametrize("value", [-1.0, float("nan"), "1", [1.0, 2.0]])
+@pytest.mark.parametrize("value", [-1.0, float("nan"), "1", [1.0, 2.0], 10**400])
 def test_what_is_no_number_of_0_or_more_is_refused(option, value):
     partition = "quadric" if option == "bending_weight" else None
     with pytest.raises(OptionError, match=f"{option} is ") as caught:
         analyse(synthetic.hills(20, 20), partition=partition, **{option: value})
     assert caught.value.options == (option,)
+
+
+@pytest.mark.parametrize("weights", [0.5, np.float64(0.5), [1.0, 2.0], [-1.0], "1"])
+def test_weights_that_are_not_one_for_each_attribute(weights):
+    """A single number was a TypeError."""
+    mesh = random_delaunay(40, n_attributes=1)
+    with pytest.raises(OptionError, match="attribute_weights are ") as caught:
+        analyse(mesh, attribute_weights=weights)
+    assert caught.value.options == ("attribute_weights",)
 
 
 # --- contradictions ---------------------------------------------------------------------------

@@ -107,7 +107,7 @@ def test_no_levels():
 # --- levels that are not there ----------------------------------------------------------------
 
 
-@pytest.mark.parametrize("level", [-1, 6, 99])
+@pytest.mark.parametrize("level", [-1, 6, 99, 1.5, float("nan")])
 @pytest.mark.parametrize(
     "question", ["mesh", "n_vertices", "n_faces", "vertex_ids", "integrals", "synthesise"]
 )
@@ -116,11 +116,26 @@ def test_a_level_that_is_not_there(pyramid, question, level):
         getattr(pyramid, question)(level)
 
 
-@pytest.mark.parametrize("level", [-1, 5])
+@pytest.mark.parametrize("level", [-1, 5, 1.5])
 @pytest.mark.parametrize("question", ["detail", "filters"])
 def test_a_step_that_is_not_there(pyramid, question, level):
     with pytest.raises(PyramidError, match=f"no details at level {level}; they are at 0 to 4"):
         getattr(pyramid, question)(level)
+
+
+def test_a_gain_of_a_level_between_two_is_refused(pyramid):
+    """It was taken, and changed nothing."""
+    with pytest.raises(OptionError, match=r"no details at level 1\.5; they are at 0 to 4"):
+        pyramid.with_gains({1.5: 0.0})
+
+
+def test_a_pyramid_without_levels_has_no_details():
+    """They were said to be at 0 to -1."""
+    flat = analyse(random_delaunay(30, seed=1), levels=0)
+    with pytest.raises(PyramidError, match="no details at level 0; this pyramid has none"):
+        flat.detail(0)
+    with pytest.raises(OptionError, match="no details at level 0; this pyramid has none"):
+        flat.with_gains({0: 2.0})
 
 
 # --- parts from strangers ---------------------------------------------------------------------
@@ -156,6 +171,10 @@ FAULTS = {
     "coarse coefficients of one dimension": lambda p, s: p | {"coarse": p["coarse"][:, 0]},
     "a face out of range": lambda p, s: p | {"faces": altered(p["faces"], (0, 0), 200)},
     "a negative face": lambda p, s: p | {"faces": altered(p["faces"], (0, 0), -1)},
+    "faces of fractions": lambda p, s: p | {"faces": p["faces"] + 0.4},
+    "odd vertices of fractions": lambda p, s: with_step(p, odd=s.odd + 0.4),
+    "columns of fractions": lambda p, s: with_step(p, indices=s.indices + 0.4),
+    "row pointers of fractions": lambda p, s: with_step(p, indptr=s.indptr * 1.0),
     "faces of another shape": lambda p, s: p | {"faces": p["faces"][:, :2]},
     "a face with a vertex twice": lambda p, s: (
         p | {"faces": altered(p["faces"], (0, 0), p["faces"][0, 1])}

@@ -71,14 +71,16 @@ def test_the_length_of_a_gap_comes_from_the_spacing():
 @pytest.mark.parametrize("max_edge", [0, -1, float("nan")])
 def test_a_length_that_is_none(max_edge):
     plan = grid_points(lake)
-    with pytest.raises(OptionError, match="max_edge"):
+    with pytest.raises(OptionError, match=r"max_edge is .*; give a length above 0") as caught:
         faces_within(plan, delaunay_faces(plan), max_edge)
+    assert caught.value.in_words(lambda option: "--max-edge").startswith("--max-edge is ")
 
 
 def test_no_face_is_left():
     plan = grid_points(lake)
-    with pytest.raises(MeshError, match="larger"):
+    with pytest.raises(MeshError, match=r"longer than max_edge = 0\.01.*larger") as caught:
         faces_within(plan, delaunay_faces(plan), 0.01)
+    assert "than --max-edge = 0.01" in caught.value.in_words(lambda option: "--max-edge")
 
 
 @given(seed=st.integers(0, 10_000), factor=st.floats(0.6, 3.0), from_outline=st.booleans())

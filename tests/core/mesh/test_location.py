@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from wavelet_core import TriangleMesh, synthetic
+from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.mesh.location import errors_with_border, surface_errors
 
 
@@ -51,3 +52,22 @@ def test_a_mesh_without_faces_is_its_vertices():
         mesh, np.array([[0, 0, 3.0], [5, 5 + 1e-9, 3.0], [1, 1, 1.0]]), 1e-6
     )
     np.testing.assert_array_equal(errors, [2.0, 1.0, np.nan])
+
+
+@pytest.mark.parametrize("beyond", [np.nan, np.inf, -np.inf])
+def test_a_place_that_is_no_number_is_covered_by_nothing(beyond):
+    """One of them was a ValueError for all points."""
+    mesh = synthetic.hills(12, 10)
+    errors = surface_errors(mesh, [[1.0, 2.0, 3.0], [beyond, 2.0, 3.0], [1.0, beyond, 3.0]])
+    assert np.isnan(errors).tolist() == [False, True, True]
+    assert errors[0] == surface_errors(mesh, np.array([[1.0, 2.0, 3.0]]))[0]
+
+
+@pytest.mark.parametrize("name", ["loops", "arrays", *(["compiled"] if HAS_NUMBA else [])])
+def test_a_face_beyond_64_bits_of_cells_covers_what_lies_in_it(name):
+    """Its rows of cells wrapped round, and points in the middle of it had no surface."""
+    far = 1e22
+    mesh = TriangleMesh([[-far, -far, 7.0], [far, -far, 7.0], [0.0, far, 7.0]], [[0, 1, 2]])
+    with engine(name):
+        errors = surface_errors(mesh, np.array([[1.0, 1.0, 8.0], [2.0, 3.0, 9.0]]))
+    assert errors.tolist() == [1.0, 2.0]

@@ -93,6 +93,14 @@ def test_a_mesh_without_faces_has_no_level(signal):
     np.testing.assert_array_equal(pyramid.mesh(0).vertices, SQUARE)
 
 
+@pytest.mark.parametrize("options", [{}, {"partition": "quadric"}, {"outline_tolerance": 1.0}])
+def test_a_mesh_without_vertices_is_nothing_to_analyse(options):
+    """It ended in a ValueError of numpy."""
+    empty = TriangleMesh(np.empty((0, 3)), np.empty((0, 3), dtype=int))
+    with pytest.raises(MeshError, match="no vertices; there is nothing to analyse"):
+        analyse(empty, **options)
+
+
 # --- from_grid --------------------------------------------------------------------------------
 
 

@@ -331,7 +331,7 @@ def test_a_size_that_is_missed_is_told_with_its_reason():
     assert stop.reason == "nothing_left"
     assert stop.misses_target
     assert stop.n_outline > 0.9 * stop.n_vertices
-    assert "20 asked for" in str(stop)
+    assert f"{stop.n_vertices} vertices are left, where 20 were asked for: " in str(stop)
     assert "outlines and holes" in str(stop)
     hills = synthetic.hills(20, 30)
     assert analyse(hills, target_vertices=50).stop.reason == "target"
@@ -340,6 +340,27 @@ def test_a_size_that_is_missed_is_told_with_its_reason():
     locked = np.ones(600, dtype=bool)
     assert analyse(hills, target_vertices=50, locked=locked).stop.n_locked == 600
     assert analyse(coast(), partition="quadric", target_vertices=20).stop.misses_target
+
+
+@pytest.mark.parametrize("rule", ["max_error", "max_rms"])
+@pytest.mark.parametrize("locks", [False, True])
+def test_a_tolerance_that_nothing_would_break_is_not_the_reason(rule, locks):
+    """Four corners, or all vertices locked, were said to be left for the sake of a kilometre."""
+    hills = synthetic.hills(12, 15)
+    stop = analyse(hills, locked=np.full(180, locks), **{rule: 1e3}).stop
+    assert stop.reason == "nothing_left"
+    assert ("180 locked" if locks else "4 on outlines") in str(stop)
+
+
+@pytest.mark.parametrize("rule", ["max_error", "max_rms"])
+def test_a_tolerance_beyond_all_measure_is_no_overflow(rule):
+    """The square of a mean error of 1e200 was an OverflowError."""
+    assert analyse(synthetic.hills(12, 15), **{rule: 1e200})[0].n_vertices == 4
+
+
+def test_a_single_vertex_is_left():
+    lone = TriangleMesh([[0.0, 0.0, 1.0]], np.empty((0, 3), dtype=int))
+    assert str(analyse(lone).stop).startswith("1 vertex is left: ")
 
 
 def test_an_outline_tolerance_needs_the_surface_partition():

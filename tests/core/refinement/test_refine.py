@@ -321,6 +321,8 @@ def test_bad_input_is_refused():
         refine(coarse, mesh, ids, norm="max", max_rms=1.0)
     with pytest.raises(OptionError, match="rounds"):
         refine(coarse, mesh, ids, rounds=-1)
+    with pytest.raises(OptionError, match=r"rounds is 1\.5; give a whole number"):
+        refine(coarse, mesh, ids, rounds=1.5)
     with pytest.raises(OptionError, match="locked"):
         refine(coarse, mesh, ids, locked=[True])
     with pytest.raises(OptionError, match="attributes"):
@@ -329,6 +331,24 @@ def test_bad_input_is_refused():
     flipped[0] = flipped[0, ::-1]
     with pytest.raises(MeshError, match="only a TIN"):
         refine(TriangleMesh(coarse.vertices, flipped), mesh, ids)
+
+
+def test_a_norm_that_there_is_not_is_refused_and_capitals_are_taken():
+    """The first was a KeyError, and so was the second."""
+    mesh = MESHES["hills"]()
+    pyramid = analyse(mesh, target_vertices=80)
+    coarse, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
+    with pytest.raises(OptionError, match="norm is 'median'; give one of rms, max"):
+        refine(coarse, mesh, ids, norm="median")
+    capitals, plain = (refine(coarse, mesh, ids, norm=n, rounds=1) for n in ("MAX", "max"))
+    assert capitals.mesh == plain.mesh
+
+
+def test_a_mean_error_beyond_all_measure_is_no_overflow():
+    mesh = MESHES["hills"]()
+    pyramid = analyse(mesh, target_vertices=80)
+    refined = refine(pyramid.mesh(0), mesh, pyramid.vertex_ids(0), max_rms=1e200)
+    assert refined.mesh.n_vertices == 4
 
 
 @pytest.mark.parametrize("name", [ORACLE, "arrays"])

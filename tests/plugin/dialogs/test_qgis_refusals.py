@@ -143,6 +143,28 @@ class TestNoOverlap:
         assert not (tmp_path / "c.tif").exists()
 
 
+@pytest.mark.parametrize("kind", [float("inf"), 1.5, 255.0])
+def test_a_class_that_is_no_small_whole_number(run, refused, dem, tmp_path, kind):
+    """Infinity ended in an OverflowError."""
+    from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
+
+    pytest.importorskip("sklearn")
+    made = run("analysedem", {"INPUT": dem, "OUTPUT": str(tmp_path / "p.gpkg"), "LEVELS": 2})
+    areas = QgsVectorLayer("Polygon?crs=EPSG:2154&field=kind:double", "areas", "memory")
+    area = QgsFeature(areas.fields())
+    area.setGeometry(QgsGeometry.fromWkt(AREA))
+    area.setAttributes([kind])
+    areas.dataProvider().addFeatures([area])
+    parameters = {
+        "INPUT": made["OUTPUT"],
+        "LEARN_FROM": "training areas",
+        "TRAINING": areas,
+        "CLASS_FIELD": "kind",
+        "RASTER": str(tmp_path / "c.tif"),
+    }
+    assert "classes are whole numbers from 0 to 254" in refused("clusterdetails", parameters)
+
+
 class TestEmptySelection:
     def test_points(self, refused, unselected, project_context, output):
         parameters = {"INPUT": unselected(point_layer(survey(50))), "OUTPUT": output}

@@ -15,8 +15,8 @@ from ..undecimated import UndecimatedBank
 from .by_place import map_of_noise
 from .by_scale import N_SCALES, deviations_by_scale, estimated_range, where_relief_ends
 from .outliers import without_outliers
-from .rounding import floored, rounding_step
-from .white import check_sigma, correlated_noise, estimate_noise, noise_columns
+from .rounding import NO_ROUNDING, Rounding
+from .white import check_sigma, correlated_noise, noise_columns
 
 #: Where the deviation in the flattest places is less than these parts of that in the flatter half,
 #: of white noise and of correlated, relief as fine as the mesh was taken for noise.
@@ -42,8 +42,8 @@ class Noise:
         0 for white noise.
     outliers : ndarray of int64, shape (n_outliers,)
         Vertices whose values are no part of the terrain; they are replaced before.
-    quantum : float
-        Step to which the values were rounded; 0 where none was found.
+    rounding : Rounding
+        What rounding has left of the values.
     plan : ndarray, shape (n_vertices, 2), or None
         Where the noise is, if it is correlated.
     n_standing_out : int
@@ -57,7 +57,7 @@ class Noise:
     relative: FloatArray | None = None
     reach: float = 0.0
     outliers: IntArray | None = None
-    quantum: float = 0.0
+    rounding: Rounding = NO_ROUNDING
     plan: FloatArray | None = None
     n_standing_out: int = 0
     is_rough: bool = False
@@ -89,7 +89,7 @@ class Noise:
 
         Examples
         --------
-        >>> Noise(0.25, reach=3.0, outliers=np.arange(4), quantum=1.0).describe()
+        >>> Noise(0.25, reach=3.0, outliers=np.arange(4), rounding=Rounding(1.0)).describe()
         '0.25, correlated over 3, values rounded to 1, 4 outliers replaced'
         """
         words = [f"{self.sigma:.4g}"]
@@ -98,8 +98,8 @@ class Noise:
             words.append(f"from {low:.3g} to {high:.3g} by place")
         if self.reach > 0:
             words.append(f"correlated over {self.reach:.3g}")
-        if self.quantum > 0:
-            words.append(f"values rounded to {self.quantum:.6g}")
+        if self.rounding.step > 0:
+            words.append(f"values rounded to {self.rounding.step:.6g}")
         if self.outliers is not None:
             one = self.n_outliers == 1
             words.append(f"{self.n_outliers:,} outlier{'' if one else 's'} replaced")
@@ -133,7 +133,7 @@ def noise_of(
     values : ndarray, shape (n_vertices,)
     sigma : float, optional
         Standard deviation of the noise; by default estimated, and no less than what rounding to
-        the step of the values takes, step / sqrt(6). Where the flattest places hold less than
+        the step of the values takes. Where the flattest places hold less than
         others, relief as fine as the mesh is among it, and those decide.
     noise_range : float or "estimate"
         Distance at which the correlation of the noise has fallen to 1/e; 0 for white noise.
@@ -153,8 +153,8 @@ def noise_of(
     check_sigma(sigma)
     _check_range(noise_range)
     n_vertices = mesh.n_vertices
-    quantum = rounding_step(values) if sigma is None else 0.0
-    noise, values = _plain_noise(mesh, values, sigma, quantum, outliers, tick)
+    rounding = Rounding.of(mesh, values) if sigma is None else NO_ROUNDING
+    noise, values = _plain_noise(mesh, values, sigma, rounding, outliers, tick)
     is_known = sigma is not None or n_vertices < LEAST_VERTICES
     is_plain = noise_range == 0.0 and not local_noise
     if (is_plain and is_known) or not len(mesh.faces) or np.ptp(values) == 0:
@@ -162,7 +162,7 @@ def noise_of(
     white = noise_columns(n_vertices, seed)[:, :4]
     bank = UndecimatedBank.from_mesh(mesh, N_SCALES + 1, white, tick=tick)
     plan = mesh.vertices[:, :2] - mesh.vertices[:, :2].min(axis=0)
-    column = _Column(bank, plan, values, quantum, seed)
+    column = _Column(bank, plan, values, rounding, seed)
     if noise_range == "estimate":
         noise_range = estimated_range(bank, plan, values, seed)
         if n_vertices >= LEAST_VERTICES and _is_relief_as_fine(column, noise, noise_range):
@@ -189,18 +189,18 @@ def _plain_noise(
     mesh: TriangleMesh,
     values: FloatArray,
     sigma: float | None,
-    quantum: float,
+    rounding: Rounding,
     outliers: bool,
     tick: Callable[[], None],
 ) -> tuple[Noise, FloatArray]:
     """Return the noise as if it were white and the same everywhere, and the values it is in."""
-    standing_out, without = without_outliers(mesh, values, sigma, quantum, tick)
+    standing_out, without = without_outliers(mesh, values, sigma, rounding, tick)
     tick()
     values = without if outliers else values
     noise = Noise(
-        floored(estimate_noise(mesh, values), quantum) if sigma is None else float(sigma),
+        rounding.deviation(mesh, values) if sigma is None else float(sigma),
         outliers=standing_out if outliers else None,
-        quantum=quantum,
+        rounding=rounding,
         n_standing_out=0 if outliers else len(standing_out),
     )
     return noise, values
@@ -212,7 +212,7 @@ class _Column(NamedTuple):
     bank: UndecimatedBank
     plan: FloatArray
     values: FloatArray
-    quantum: float
+    rounding: Rounding
     seed: int
 
     def deviations(self, noise: Noise) -> tuple[FloatArray, FloatArray]:
@@ -232,17 +232,19 @@ def _correlated(column: _Column, noise: Noise, noise_range: float, sigma: float 
     if sigma is not None:
         return noise
     half = column.deviations(noise)[0]
-    return replace(noise, sigma=floored(float(np.median(half)), column.quantum))
+    return replace(noise, sigma=max(float(np.median(half)), column.rounding.least))
 
 
 def _without_relief(column: _Column, noise: Noise, white: FloatArray) -> Noise:
     """Return white noise of a deviation that leaves out relief as fine as the mesh."""
+    if noise.sigma < column.rounding.step:  # flat places are terraces, which have less of any noise
+        return noise
     half, flattest = deviations_by_scale(column.bank, column.values, white[:, 0])
     is_rough = noise.is_rough or bool(flattest[0] < STEADY_WHITE * half[0])
     ending = where_relief_ends(column.bank, column.values, white)
     if not (is_rough or ending < STEADY_WHITE * noise.sigma):
         return noise
-    deviation = floored(min(ending, noise.sigma), column.quantum)
+    deviation = max(min(ending, noise.sigma), column.rounding.least)
     return replace(noise, sigma=deviation, is_rough=is_rough)
 
 
@@ -254,6 +256,6 @@ def _by_place(column: _Column, noise: Noise, sigma: float | None) -> Noise:
     typical = float(np.median(local))
     return replace(
         noise,
-        sigma=floored(typical, column.quantum) if sigma is None else noise.sigma,
+        sigma=max(typical, column.rounding.least) if sigma is None else noise.sigma,
         relative=local / typical,
     )

@@ -9,8 +9,7 @@ import numpy as np
 from ..._validate import FloatArray, IntArray
 from ...mesh.triangle_mesh import TriangleMesh
 from ..undecimated import rings
-from .rounding import floored
-from .white import estimate_noise
+from .rounding import NO_ROUNDING, Rounding
 
 #: An outlier is so many standard deviations of the noise, plus so many times the relief of its
 #: ring, above the second highest of its neighbours or below the second lowest. With one vertex in
@@ -33,7 +32,7 @@ def without_outliers(
     mesh: TriangleMesh,
     values: FloatArray,
     sigma: float | None = None,
-    quantum: float = 0.0,
+    rounding: Rounding = NO_ROUNDING,
     tick: Callable[[], None] = lambda: None,
 ) -> tuple[IntArray, FloatArray]:
     """Return the vertices that stand out of their rings, and the values with those filled.
@@ -44,8 +43,8 @@ def without_outliers(
     values : ndarray, shape (n_vertices,)
     sigma : float, optional
         Standard deviation of the noise; by default estimated.
-    quantum : float
-        Step to which the values were rounded.
+    rounding : Rounding
+        That of the values.
     tick : callable
         Called now and then; it may raise, to stop.
 
@@ -64,7 +63,7 @@ def without_outliers(
     row, column = around.rows[keeps], around.indices[keeps]
     del around, keeps
     tick()
-    deviation = floored(estimate_noise(mesh, values), quantum) if sigma is None else sigma
+    deviation = rounding.deviation(mesh, values) if sigma is None else sigma
     # At an outline all neighbours may lie downhill.
     is_inside = np.bincount(row, minlength=n) == np.bincount(mesh.faces.ravel(), minlength=n)
     tick()
