@@ -52,6 +52,10 @@ LEVELS = 64
 #: TIN made for its size (autzen_trim), with 0.12 up to 1.09, in the same time.
 _COARSEST_SHARE, _SHARE_OF_LEVEL = 1 / 32, 0.12
 
+#: Options by which files are read, that a plan has.
+_OF_RASTERS = {"band", "nodata", "offline"}
+_OF_POINTS = {"attributes", "classes", "keep_noise", "keep_withheld", "duplicates"}
+
 #: Options of `wavelet_core.analyse` that leave x and y of the vertices in place.
 _WAVELETS = ("norm", "partition", "prediction", "removal_fraction", "update")
 
@@ -327,6 +331,10 @@ class TilePlan:
             if stored.text("format") != _FORMAT:
                 raise ValueError(f"the format is {raw['format']!r}")
             n_rows, n_columns = stored.integers("shape", 1, 2**31 - 1)
+            of = _OF_RASTERS if "points" not in raw else _OF_POINTS
+            if set(stored.fields("reading")) != of:
+                raise ValueError(f"it is read by {', '.join(raw['reading'])}")
+            resolve_options(n_attributes=0, **checked_wavelets(dict(stored.fields("wavelets"))))
             return cls(
                 files=tuple(SourceFile(str(f[0]), *map(int, f[1:])) for f in raw["files"]),
                 shape=(n_rows, n_columns),

@@ -82,7 +82,7 @@ def national(n_rows, n_columns, tmp_path):
     ("n_rows", "n_columns", "share"),
     [
         (11, 9, 0.05),
-        pytest.param(40, 50, 0.01, marks=pytest.mark.large),
+        pytest.param(24, 25, 0.02, marks=pytest.mark.large),
         pytest.param(250, 400, 0.002, marks=[pytest.mark.large, WHERE_ASKED]),
     ],
 )

@@ -12,6 +12,7 @@ import wavelet_gis as wg
 from wavelet_gis.cli.main import main
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.raster import write_dem
+from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.plan import TilePlan
 
 SIZE = 16
@@ -133,3 +134,21 @@ def test_a_plan_with_numbers_beyond_all_measure_is_refused_in_one_line(with_a_ga
     text = json.dumps(plan).replace('"SIZE"', size)
     with pytest.raises(InputFileError, match="plan: this is no plan of tiles"):
         TilePlan.from_json(text, "plan")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"wavelets": {"levels": 3}},
+        {"wavelets": {"partition": "none of ours"}},
+        {"wavelets": {"removal_fraction": "all"}},
+        {"reading": {"band": 1}},
+        {"reading": {"band": 1, "nodata": None, "offline": True, "path": "/etc/passwd"}},
+    ],
+)
+def test_a_plan_with_options_that_tiles_do_not_have_is_refused_in_one_line(with_a_gap, options):
+    plan = json.loads((with_a_gap / "plan.json").read_text())
+    (with_a_gap / "plan.json").write_text(json.dumps({**plan, **options}))
+    with pytest.raises(InputFileError, match="this is no plan of tiles") as error:
+        open_index(with_a_gap)
+    assert "\n" not in str(error.value)

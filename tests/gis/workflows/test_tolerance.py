@@ -143,6 +143,7 @@ class TestWhatItIs:
             ("max(0.1, slope / 10, 0.2)", lambda z, slope: np.maximum(0.2, slope / 10)),
             ("where(z < 105, 0.05, 2)", lambda z, slope: np.where(z < 105, 0.05, 2.0)),
             ("min(sqrt(abs(-z)) ** 2 / 100, 3)", lambda z, slope: np.minimum(z / 100, 3)),
+            ("min(1" + 400 * "0" + ", 2)", lambda z, slope: np.full(len(z), 2.0)),
         ],
     )
     def test_a_formula_of_height_and_slope(self, terrain, formula, expected):

@@ -62,7 +62,10 @@ def value_of(part: ast.expr, variables: Mapping[str, Callable[[], FloatArray]], 
         return value_of(node, variables, text)
 
     if isinstance(part, ast.Constant) and isinstance(part.value, int | float):
-        return float(part.value)
+        try:
+            return float(part.value)
+        except OverflowError:
+            return np.inf  # as a float of so many digits is read
     if isinstance(part, ast.Name) and part.id in variables:
         return variables[part.id]()
     with np.errstate(all="ignore"):
