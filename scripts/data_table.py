@@ -35,12 +35,14 @@ WHY_NOTED = {
     "crs_missing": "without a CRS nothing says where x and y are or in what unit",
     "crs_of_unknown_kind": "a local CRS may be in any unit",
     "doubtful_elevations": "the number may be meant as nodata, and only the user knows",
+    "ept_counts": "the hierarchy of the set contradicts its files",
     "gaps": "long triangles across gaps are no terrain; `--max-edge` leaves them out",
     "header_extent": "the extent in the header is not that of the points",
     "impossible_elevations": "no terrain is that high, so these cells are holes",
     "las_crs": "two records, or coordinates and CRS, contradict each other",
     "las_header": "the header contradicts the file, or itself, where the points can still be read",
     "local_metric_frame": "slopes and areas need metres on both axes",
+    "merged_cloud": "the nodes of a set are one cloud",
     "merged_points": "a surface has one height at a place; the others count in every error",
     "plane_not_true_to_scale": "lengths on this plane are not those on the ground",
     "points_aside": "noise and withheld points are no ground; they come back all the same",
@@ -65,7 +67,6 @@ WHY_REFUSED = (
         "the compressed points cannot be read",
         "the points cannot be had, and the decoder must not take the program with it",
     ),
-    ("nor a layer that GDAL can open", "an index of tiles is no terrain; its tiles are"),
     ("give no elevations", "a scale of 0 makes one number of all elevations"),
     ("corners; a TIN is made of triangles", "the clip polygon of a case, no terrain"),
     ("holds neither points nor triangles", "the breakline of a case, no terrain"),
@@ -139,7 +140,7 @@ def _tried(path: Path, scratch: Path) -> tuple[list[str], list[str]]:
     figures = json.loads(out)
     notes = json.loads(_run("info", pyramid, "--json")[1])["notes"]
     happened.append(f"{figures['n_vertices']:,} vertices")
-    back = scratch / f"back{path.suffix}"
+    back = scratch / ("back.laz" if path.name == "ept.json" else f"back{path.suffix}")
     code, _, err = _run("reconstruct", pyramid, back)
     if code != 0:
         happened.append(_refusal(err, path))
@@ -193,9 +194,18 @@ def _comparison(path: Path, back: Path) -> str:
             same &= (one.read_masks(1) == other.read_masks(1)).all()
             same &= tuple(one.transform) == tuple(other.transform)
         return "comes back bit for bit" if same else "COMES BACK CHANGED"
+    import laspy
+    import numpy as np
+
+    if path.name == "ept.json":
+        nodes = [laspy.read(node).xyz for node in sorted(path.parent.glob("ept-data/*.laz"))]
+        due, found = np.concatenate(nodes), laspy.read(back).xyz
+        same = due.shape == found.shape and np.allclose(
+            np.sort(due, 0), np.sort(found, 0), atol=1e-6
+        )
+        return "the points of all nodes come back" if same else "COMES BACK CHANGED"
     if path.read_bytes() == back.read_bytes():
         return "comes back byte for byte"
-    import laspy
 
     one, other = laspy.read(path), laspy.read(back)
     same = one.points.array.tobytes() == other.points.array.tobytes()

@@ -53,8 +53,8 @@ LEVELS = 64
 _COARSEST_SHARE, _SHARE_OF_LEVEL = 1 / 32, 0.12
 
 #: Options by which files are read, that a plan has.
-_OF_RASTERS = {"band", "nodata", "offline"}
-_OF_POINTS = {"attributes", "classes", "keep_noise", "keep_withheld", "duplicates"}
+_OF_READING = {"band", "nodata", "offline", "attributes", "classes", "keep_noise"}
+_OF_READING |= {"keep_withheld", "duplicates"}
 
 #: Options of `wavelet_core.analyse` that leave x and y of the vertices in place.
 _WAVELETS = ("norm", "partition", "prediction", "removal_fraction", "update")
@@ -331,8 +331,7 @@ class TilePlan:
             if stored.text("format") != _FORMAT:
                 raise ValueError(f"the format is {raw['format']!r}")
             n_rows, n_columns = stored.integers("shape", 1, 2**31 - 1)
-            of = _OF_RASTERS if "points" not in raw else _OF_POINTS
-            if set(stored.fields("reading")) != of:
+            if not set(stored.fields("reading")) <= _OF_READING:
                 raise ValueError(f"it is read by {', '.join(raw['reading'])}")
             resolve_options(n_attributes=0, **checked_wavelets(dict(stored.fields("wavelets"))))
             return cls(

@@ -144,7 +144,7 @@ def _on_dask(jobs: Sequence[Job], scheduler: str) -> Iterator[dict[str, Any]]:
             for future in done(futures):
                 yield future.result()
                 future.release()
-        except FutureCancelledError as error:
+        except (FutureCancelledError, OSError) as error:  # make_piece notes what it meets itself
             raise OutputFileError(
                 f"{scheduler}: the Dask scheduler is gone; what was made is kept: start one again, "
                 "with workers, and the same command goes on from there."

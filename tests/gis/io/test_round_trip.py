@@ -185,13 +185,3 @@ def test_a_band_of_a_picture(data_folder, tmp_path):
     geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=2))
     write_dem(tmp_path / "out.tif", geo.restore(), geo.system.wkt)
     assert_same_raster(path, tmp_path / "out.tif", band=1)
-
-
-@pytest.mark.parametrize(
-    "name", ["ept/lone-star-laszip/ept.json", "ept/bad-pointcount/laszip/ept.json"]
-)
-def test_point_tiles_are_refused_in_words(data_folder, name):
-    from wavelet_gis.errors import InputFileError
-
-    with pytest.raises(InputFileError, match="raster"):
-        open_terrain(data_folder / name)

@@ -142,7 +142,6 @@ def test_a_plan_with_numbers_beyond_all_measure_is_refused_in_one_line(with_a_ga
         {"wavelets": {"levels": 3}},
         {"wavelets": {"partition": "none of ours"}},
         {"wavelets": {"removal_fraction": "all"}},
-        {"reading": {"band": 1}},
         {"reading": {"band": 1, "nodata": None, "offline": True, "path": "/etc/passwd"}},
     ],
 )
