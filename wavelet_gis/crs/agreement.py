@@ -77,5 +77,9 @@ def _is_same(one: str | None, other: str | None) -> bool:
     if not one or not other:
         return False
     from pyproj import CRS
+    from pyproj.exceptions import CRSError
 
-    return bool(CRS.from_user_input(one) == CRS.from_user_input(other))
+    try:
+        return bool(CRS.from_user_input(one) == CRS.from_user_input(other))
+    except CRSError:  # what is wrong with it is said as it is described
+        return False

@@ -7,8 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from wavelet_gis.crs.agreement import agreed
 from wavelet_gis.crs.frame import (
     CoordinateSystem,
+    Georeference,
     LocalFrame,
     metres_per_degree,
     vertical_unit_name,
@@ -194,3 +196,10 @@ def test_units_in_which_nothing_can_be_measured(factors):
         axes = axes.replace('LENGTHUNIT["metre",1]', f'LENGTHUNIT["x{factor}",{factor}]', 1)
     with pytest.raises(CrsError, match="counts x and y in units of"):
         coordinate_system(head + "CS[Cartesian,2]" + axes)
+
+
+def test_a_broken_crs_among_several_is_said_in_one_line():
+    places = [Georeference(wkt="EPSG:32632"), Georeference(wkt='PROJCS["broken')]
+    with pytest.raises(CrsError) as error:
+        agreed(["a.tif", "b.tif"], places)
+    assert "\n" not in str(error.value)

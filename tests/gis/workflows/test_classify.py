@@ -1,5 +1,6 @@
 """Clusters and classes: what is plainly apart is told apart, and the answer does not wander."""
 
+import json
 import sys
 
 import numpy as np
@@ -303,6 +304,12 @@ def test_labels_that_do_not_fit_are_refused(halves, cloud_record, tmp_path):
         labels_from_layer(halves, far, "kind")
     with pytest.raises(InputFileError, match="cannot be read"):
         labels_from_layer(halves, tmp_path / "none.gpkg", "class")
+    ring = {"type": "Polygon", "coordinates": [[[0, 0], [9, 0], [9, 9]]]}  # is not closed
+    feature = {"type": "Feature", "properties": {"class": 1}, "geometry": ring}
+    damaged = tmp_path / "ring.geojson"
+    damaged.write_text(json.dumps({"type": "FeatureCollection", "features": [feature]}))
+    with pytest.raises(InputFileError, match="a shape of the layer ring is damaged"):
+        labels_from_layer(halves, damaged, "class")
     line = write_layer(tmp_path / "line.gpkg", [shapely.LineString([(0, 0), (9, 9)])], [1])
     with pytest.raises(InputFileError, match="polygons or points"):
         labels_from_layer(halves, line, "class")

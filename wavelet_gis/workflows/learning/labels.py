@@ -97,25 +97,21 @@ def labels_from_layer(
     InputFileError
         The file cannot be read, has no such field, holds lines, or labels no vertex.
     """
-    import pyogrio
     import shapely
 
+    from wavelet_gis.io.vector.vector_reader import read_shapes
+
     name = os.fspath(path)
-    try:
-        with_crs, _, geometry, columns = pyogrio.raw.read(name, layer=layer, columns=[field])
-    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, ValueError) as error:
-        reason = str(error).splitlines()[0].rstrip(".")
-        raise InputFileError(f"{name}: the labels cannot be read ({reason}).") from error
-    if field not in list(with_crs["fields"]):
+    shapes, table, wkt = read_shapes(name, layer, [field])
+    if field not in table:
         raise InputFileError(
             "{name}: there is no field {field!r}; name one with {0}.",
             "field",
             name=name,
             field=field,
         )
-    _require_same_crs(geo, name, with_crs["crs"])
-    classes = _whole_numbers(name, field, columns[0])
-    shapes = shapely.from_wkb(geometry)
+    _require_same_crs(geo, name, wkt)
+    classes = _whole_numbers(name, field, table[field])
     kinds = set(shapely.get_type_id(shapes[~shapely.is_missing(shapes)]).tolist())
     vertices = geo.frame.to_file(geo.pyramid.synthesise().vertices)
     if kinds and kinds <= {0, 4}:
