@@ -1,4 +1,4 @@
-"""Outputs that appear whole, or not at all: files, read back and on the disk, and folders."""
+"""Outputs that appear whole, or not at all: files and folders, on the disk and read back."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from wavelet_gis.io.companions import (
     warn_of_foreign_files,
 )
 from wavelet_gis.io.names import MAX_DATABASE_NAME, file_of, is_utf8
-from wavelet_gis.io.read_back import Check, checks_of, require_sound_file
+from wavelet_gis.io.read_back import Check, checks_below, checks_of, require_sound_file
 from wavelet_gis.io.scratch import scratch_folder, sweep
 from wavelet_gis.notes import warn
 
-__all__ = ["check_folder", "check_output", "new_file", "new_folder"]
+__all__ = ["check_folder", "check_output", "ensure_folder", "new_file", "new_folder"]
 
 #: What the file is called in the scratch folder: no library stumbles over it.
 _SCRATCH_STEM = "out"
@@ -79,14 +79,7 @@ def check_output(
             )
     if exists and not overwrite:
         raise OutputFileError(_EXISTS, "overwrite", path=target)
-    if target.is_symlink() and not exists and not overwrite:
-        raise OutputFileError(
-            "{path}: this is a link to {goal}, which is not there; give another name, or {0} to "
-            "write what it points to.",
-            "overwrite",
-            path=target,
-            goal=os.readlink(target),
-        )
+    _refuse_link_to_nothing(target, overwrite=overwrite)
     place = _place(target)
     if not place.parent.is_dir():
         raise OutputFileError(f"{place.parent}: there is no such folder; create it first.")
@@ -162,7 +155,9 @@ def check_folder(path: str | os.PathLike[str], marker: str, *, overwrite: bool =
         be written.
     """
     target = Path(path)
-    if os.path.lexists(target):
+    _refuse_link_to_nothing(target, overwrite=overwrite)
+    place = _place(target)
+    if os.path.lexists(place):
         is_empty = target.is_dir() and not any(target.iterdir())
         if not is_empty and not (target.is_dir() and (target / marker).is_file()):
             raise OutputFileError(
@@ -174,11 +169,33 @@ def check_folder(path: str | os.PathLike[str], marker: str, *, overwrite: bool =
                 "overwrite",
                 path=target,
             )
-    parent = target.absolute().parent
+    parent = place.absolute().parent
     if not parent.is_dir():
         raise OutputFileError(f"{parent}: there is no such folder; create it first.")
-    with scratch_folder(target.absolute()):
+    with scratch_folder(place.absolute()):
         pass
+    return target
+
+
+def ensure_folder(path: str | os.PathLike[str]) -> Path:
+    """Return the path of a folder that files are added to, made if it was not there.
+
+    Raises
+    ------
+    OutputFileError
+        A file is there, or a link to nothing, or the folder around it is missing.
+    """
+    target = Path(path)
+    if target.is_symlink() and not target.exists():
+        raise OutputFileError(
+            f"{target}: this is a link to {os.readlink(target)}, which is not there; make that "
+            "folder first."
+        )
+    if target.exists() and not target.is_dir():
+        raise OutputFileError(f"{target}: this is a file; name a folder.")
+    if not target.absolute().parent.is_dir():
+        raise OutputFileError(f"{target.parent}: there is no such folder; create it first.")
+    target.mkdir(exist_ok=True)
     return target
 
 
@@ -188,28 +205,57 @@ def new_folder(
 ) -> Iterator[Path]:
     """Yield an empty folder beside `path`; moved to `path` when the block ends without an error.
 
+    As with `new_file` all that was written there is synced to the disk and read back before, a
+    link is written through, and a folder that is replaced keeps its mode and owner.
+
     Parameters
     ----------
     path, marker, overwrite
         See `check_folder`.
     """
-    target = check_folder(path, marker, overwrite=overwrite).absolute()
-    sweep(target.parent)
-    with scratch_folder(target) as scratch:
+    target = check_folder(path, marker, overwrite=overwrite)
+    place = _place(target).absolute()
+    sweep(place.parent)
+    with scratch_folder(place) as scratch:
         folder = scratch / "out"
         folder.mkdir()
-        yield folder
-        if not (folder / marker).is_file():
-            raise OutputFileError(f"{target}: no {marker} was written; please report this.")
+        with _named(folder, target), checks_below(folder) as checks:
+            yield folder
+            if not (folder / marker).is_file():
+                raise OutputFileError(f"{target}: no {marker} was written; please report this.")
+            _settle_below(folder, target, checks)
+        _keep_owner(folder, place)
         aside = scratch / "replaced"
         try:
-            if target.is_dir():
-                os.replace(target, aside)
-            os.replace(folder, target)
+            if place.is_dir():
+                os.replace(place, aside)
+            os.replace(folder, place)
         except BaseException:
-            if aside.is_dir() and not target.exists():
-                os.replace(aside, target)
+            if aside.is_dir() and not place.exists():
+                os.replace(aside, place)
             raise
+        _sync_folder(place.parent)
+
+
+def _settle_below(folder: Path, target: Path, checks: dict[str, list[Check]]) -> None:
+    """Sync and check all that was written in a scratch folder."""
+    for place, _, names in os.walk(folder, topdown=False):
+        for name in names:
+            file = Path(place, name)
+            _sync(file)
+            _verify(file, target / file.relative_to(folder), checks.get(str(file), []))
+        _sync_folder(Path(place))
+
+
+def _refuse_link_to_nothing(target: Path, *, overwrite: bool) -> None:
+    if target.is_symlink() and not target.exists() and not overwrite:
+        raise OutputFileError(
+            "{path}: this is a link to {goal}, which is not there; give another name, or {0} to "
+            "write what it points to.",
+            "overwrite",
+            path=target,
+            goal=os.readlink(target),
+        )
 
 
 def _exists(target: Path) -> bool:
@@ -260,8 +306,8 @@ def _named(scratch: Path, target: Path) -> Iterator[None]:
         if isinstance(error, WaveletError):
             error.template = str(in_place(error.template))
             error.values = {name: in_place(value) for name, value in error.values.items()}
-        if isinstance(error, OSError) and error.filename == os.fspath(scratch):
-            error.filename = os.fspath(target)
+        if isinstance(error, OSError) and error.filename is not None:
+            error.filename = in_place(error.filename)
         raise
 
 

@@ -2,7 +2,7 @@
 
 A full disk does not always raise: GDAL fails when it closes a file, after rasterio has stopped
 listening. Every writer therefore says, with `read_back`, how its file is checked, and
-`wavelet_gis.io.atomic.new_file` takes no file that nobody can check.
+`wavelet_gis.io.atomic` takes no file that nobody can check.
 """
 
 from __future__ import annotations
@@ -12,13 +12,14 @@ import shutil
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import IO, Any
+from typing import IO, Any, NamedTuple
 
 from wavelet_core.errors import Cancelled
 from wavelet_gis.errors import OutputFileError
 
 __all__ = [
     "Check",
+    "checks_below",
     "checks_of",
     "read_back",
     "recorded_stream",
@@ -36,6 +37,9 @@ _BYTES_AT_ONCE = 1 << 22
 #: Checks of the scratch files that are being written, by their paths.
 _pending: dict[str, list[Check]] = {}
 
+#: The same of the files in scratch folders, by the paths of the folders.
+_pending_below: dict[str, dict[str, list[Check]]] = {}
+
 
 @contextmanager
 def checks_of(path: str | os.PathLike[str]) -> Iterator[list[Check]]:
@@ -48,6 +52,17 @@ def checks_of(path: str | os.PathLike[str]) -> Iterator[list[Check]]:
         del _pending[key]
 
 
+@contextmanager
+def checks_below(folder: str | os.PathLike[str]) -> Iterator[dict[str, list[Check]]]:
+    """Yield the table that gathers the checks of all files in a scratch folder, by their paths."""
+    key = os.fspath(folder)
+    _pending_below[key] = {}
+    try:
+        yield _pending_below[key]
+    finally:
+        del _pending_below[key]
+
+
 def read_back(path: str | os.PathLike[str], check: Check) -> None:
     """Have a written and closed file checked: before it is moved to its place, or else at once.
 
@@ -58,11 +73,21 @@ def read_back(path: str | os.PathLike[str], check: Check) -> None:
     check : callable
         Takes the path and raises, with the reason, when the file is not as it should be.
     """
-    waiting = _pending.get(os.fspath(path))
+    waiting = _waiting(os.fspath(path))
     if waiting is None:
         require_sound_file(path, check)
     elif check not in waiting:  # a database may have had several writers
         waiting.append(check)
+
+
+def _waiting(path: str) -> list[Check] | None:
+    """Return the list that a file's checks wait in, None where nothing waits."""
+    if path in _pending:
+        return _pending[path]
+    for folder, checks in _pending_below.items():
+        if path.startswith(folder + os.sep):
+            return checks.setdefault(path, [])
+    return None
 
 
 def require_sound_file(
@@ -116,7 +141,27 @@ def recorded_stream(path: str | os.PathLike[str]) -> Iterator[IO[Any]]:
     with open(path, "wb") as raw:
         recorded = _Recorded(raw)
         yield recorded  # type: ignore[misc]
-    read_back(path, recorded.check)
+    read_back(path, recorded.written.check)
+
+
+class _Written(NamedTuple):
+    """The size and the checksum of what was written."""
+
+    size: int = 0
+    checksum: int = 0
+
+    def with_block(self, block: bytes) -> _Written:
+        return _Written(self.size + len(block), zlib.crc32(block, self.checksum))
+
+    def check(self, path: str | os.PathLike[str]) -> None:
+        found = _Written()
+        with open(path, "rb") as stream:
+            while block := stream.read(_BYTES_AT_ONCE):
+                found = found.with_block(block)
+        if found.size != self.size:
+            raise OutputFileError(f"{found.size} bytes are there of {self.size}")
+        if found != self:
+            raise OutputFileError("its bytes differ from those written")
 
 
 class _Recorded:
@@ -124,29 +169,16 @@ class _Recorded:
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream
-        self._size = 0
-        self._checksum = 0
+        self.written = _Written()
 
     def write(self, content: Any) -> int:
         data = content.encode("utf-8") if isinstance(content, str) else bytes(content)
-        self._size += len(data)
-        self._checksum = zlib.crc32(data, self._checksum)
+        self.written = self.written.with_block(data)
         return self._stream.write(data)
 
     def writelines(self, lines: Any) -> None:
         for line in lines:
             self.write(line)
-
-    def check(self, path: str | os.PathLike[str]) -> None:
-        size = checksum = 0
-        with open(path, "rb") as stream:
-            while block := stream.read(_BYTES_AT_ONCE):
-                size += len(block)
-                checksum = zlib.crc32(block, checksum)
-        if size != self._size:
-            raise OutputFileError(f"{size} bytes are there of {self._size}")
-        if checksum != self._checksum:
-            raise OutputFileError("its bytes differ from those written")
 
 
 def room_at(folder: str | os.PathLike[str]) -> str:

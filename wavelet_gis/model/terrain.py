@@ -59,8 +59,8 @@ class Terrain:
     notes : tuple of Note
         What is worth saying about it.
     merged : (n_merged, 3) float64 or None
-        Points in the working frame that share x and y with a vertex which stands for them, where
-        the origin does not keep them.
+        Points in the working frame that are no vertices, such as those that share x and y with a
+        vertex which stands for them, where the origin does not keep them.
     locked : (n_vertices,) bool or None
         Vertices that stay at every level: of breaklines and a clip polygon, and fixed points.
     profile : (n, 3) float64 or None

@@ -60,10 +60,9 @@ class Area:
         found: NDArray[np.bool_] = (
             (corners.min(axis=1) <= (x_max, y_max)) & (corners.max(axis=1) >= (x_min, y_min))
         ).all(axis=1)
-        if self.bounds is None:
-            at_stake = np.flatnonzero(found)
-            shapely.prepare(self.shape)
-            found[at_stake] = shapely.intersects(shapely.polygons(corners[at_stake]), self.shape)
+        at_stake = np.flatnonzero(found)
+        shapely.prepare(self.shape)
+        found[at_stake] = shapely.intersects(shapely.polygons(corners[at_stake]), self.shape)
         return found
 
     def part_of(self, mesh: TriangleMesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
 from typing import Any, NamedTuple
@@ -21,6 +21,11 @@ from wavelet_gis.model.terrain import Terrain, terrain_of_mesh
 from wavelet_gis.notes import warn
 from wavelet_gis.tiles.area import Area, Box, area_of
 from wavelet_gis.tiles.index import TileIndex, open_index
+from wavelet_gis.tiles.input_points import (
+    is_first_tile,
+    points_beside_vertices,
+    points_without_surface,
+)
 from wavelet_gis.tiles.piece import join
 from wavelet_gis.tiles.plan import Piece
 from wavelet_gis.tiles.within import PointErrors, pieces_within
@@ -153,10 +158,11 @@ def _within(index: TileIndex, area: Area, max_error: float) -> _Parts:
     z_scale = index.plan.local_frame.z_scale
     chosen = list(pieces_within(index, area, max_error * z_scale))
     pieces = [one.piece for one in chosen]
-    errors = _errors_of(
-        [*chain.from_iterable(one.errors for one in chosen), *_without_surface(index, area)],
-        z_scale,
-    )
+    of_loose = [
+        PointErrors(np.full(len(cells), np.nan), cells)
+        for _, cells in points_without_surface(index, area)
+    ]
+    errors = _errors_of([*chain.from_iterable(one.errors for one in chosen), *of_loose], z_scale)
     if pieces:
         warn_of_error_above(str(index.folder), errors.max_error, None, max_error=max_error)
     return _Parts(
@@ -169,21 +175,12 @@ def _within(index: TileIndex, area: Area, max_error: float) -> _Parts:
     )
 
 
-def _without_surface(index: TileIndex, area: Area) -> Iterator[PointErrors]:
-    """Yield the points of tiles that have no surface, by whichever are in an area."""
-    if index.plan.points is None:
-        return
-    from wavelet_gis.tiles.cloud.restore import loose_points
-
-    for tile in index.plan.pieces(0):
-        if index.records.get(tile, {}).get("status") == "loose" and area.has_piece(tile):
-            places, cells = loose_points(index, tile)
-            inside = area.has_points(places)
-            yield PointErrors(np.full(np.count_nonzero(inside), np.nan), cells[inside])
-
-
 def terrain_of_region(
-    index: str | os.PathLike[str] | TileIndex, *, level: int | None = None, **where: Any
+    index: str | os.PathLike[str] | TileIndex,
+    *,
+    level: int | None = None,
+    bbox: Box | None = None,
+    polygon: Any = None,
 ) -> Terrain:
     """Return a region of a tile set as a terrain, to be made anything of that a TIN can be.
 
@@ -192,16 +189,20 @@ def terrain_of_region(
     index : path or TileIndex
     level : int, optional
         By default the finest, which is all of the input in memory.
-    **where
+    bbox, polygon
         See `extract_region`.
     """
     found = index if isinstance(index, TileIndex) else open_index(index)
     chosen = found.n_levels if level is None else level
-    mesh = extract_region(found, level=chosen, **where).surface.mesh
+    mesh = extract_region(found, level=chosen, bbox=bbox, polygon=polygon).surface.mesh
     plan = found.plan
-    return terrain_of_mesh(
+    terrain = terrain_of_mesh(
         found.folder.name, mesh, plan.coordinate_system, plan.local_frame, plan.vertical_unit
     )
+    if chosen < found.n_levels:
+        return terrain
+    area = area_of(plan, bbox, polygon)
+    return replace(terrain, merged=points_beside_vertices(found, area))
 
 
 def _warn_of_gaps(index: TileIndex, area: Area, stage: int) -> None:
@@ -230,11 +231,7 @@ def _warn_of_gaps(index: TileIndex, area: Area, stage: int) -> None:
 def _errors_of(parts: list[PointErrors], z_scale: float) -> SurfaceErrors:
     """Return the errors of all points in figures, those of several tiles counted once."""
     errors = np.concatenate([np.empty(0), *(part.errors for part in parts)])
-    cells = np.concatenate([np.empty(0, np.int64), *(part.cells for part in parts)])
-    tile = np.repeat(np.arange(len(parts)), [len(part.cells) for part in parts])
-    _, first, place = np.unique(cells, return_index=True, return_inverse=True)
-    # A cell counts in the first tile that has it, with all the points that are merged there.
-    counts = (cells < 0) | (tile == tile[first][place.ravel()])
+    counts = is_first_tile([part.cells for part in parts])
     return errors_in_figures(errors[counts] / z_scale)
 
 

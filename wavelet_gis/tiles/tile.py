@@ -11,7 +11,7 @@ from typing import Any
 
 from wavelet_core.errors import OptionError
 from wavelet_gis.errors import OutputFileError, TerrainWarning
-from wavelet_gis.io.atomic import new_file
+from wavelet_gis.io.atomic import ensure_folder, new_file
 from wavelet_gis.io.read_back import write_text
 from wavelet_gis.io.scratch import sweep_own
 from wavelet_gis.notes import warn
@@ -276,8 +276,6 @@ def _cut(
 
 def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
     """Return the folder, with the plan in it."""
-    if not folder.parent.is_dir():
-        raise OutputFileError(f"{folder.parent}: there is no such folder; create it first.")
     is_there = folder.exists() and not (folder.is_dir() and not any(folder.iterdir()))
     if is_there and not (folder / PLAN).is_file():
         raise OutputFileError(
@@ -295,7 +293,7 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
         for name in (PIECES, CUT, SOURCES):
             shutil.rmtree(folder / name, ignore_errors=True)
         (folder / INDEX).unlink(missing_ok=True)
-    folder.mkdir(exist_ok=True)
+    ensure_folder(folder)
     stages = [f"{PIECES}/{stage}" for stage in range(plan.n_stages)]
     for name in (CUT, SOURCES, *stages):  # what a killed run had begun
         sweep_own(folder / name)

@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 from wavelet_core import TriangleMesh
 from wavelet_core.accuracy.between_levels import mesh_of_accuracy
 from wavelet_core.mesh.location import errors_with_border
-from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.tiles.area import Area
 from wavelet_gis.tiles.index import TileIndex
-from wavelet_gis.tiles.piece import cells_of
+from wavelet_gis.tiles.input_points import InputPoints, points_of_tile
 from wavelet_gis.tiles.plan import Piece
 
 __all__ = ["Chosen", "PointErrors", "pieces_within"]
@@ -89,7 +88,7 @@ def _tile(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen:
 
     geo = read_pyramid(index.path(piece))
     part = mesh_of_accuracy(geo.pyramid, limit)
-    points = _points_of(index, piece, geo)
+    points = points_of_tile(index, piece, geo)
     errors = _errors_on(part.mesh, points.places)
     counted = _counted(area, part.mesh, points, errors)
     return Chosen(piece, part.mesh, part.level, (counted,))
@@ -132,41 +131,13 @@ def _errors_within(
     for tile in index.plan.tiles(piece):
         if index.records.get(tile, {}).get("status") != "whole" or not area.has_piece(tile):
             continue
-        points = _points_of(index, tile, read_input(index.path(tile)))
+        points = points_of_tile(index, tile, read_input(index.path(tile)))
         below = _errors_on(mesh, points.places)
         of_vertices = points.vertex_heights + below[: len(points.vertex_heights)]
         if not (np.abs(of_vertices) <= limit).all():
             return None
         found.append(_counted(area, mesh, points, below))
     return tuple(found)
-
-
-class _Points(NamedTuple):
-    """The input's points in a tile.
-
-    places : (n, 3) float64, with z of 0; those of the vertices first
-    heights : (n,) float64
-    vertex_heights : (n_vertices,) float64, which are others where points were merged to a mean
-    cells : (n,) int64, in the grid of all; -1 where no other tile has them
-    """
-
-    places: NDArray[np.float64]
-    heights: NDArray[np.float64]
-    vertex_heights: NDArray[np.float64]
-    cells: NDArray[np.int64]
-
-
-def _points_of(index: TileIndex, tile: Piece, geo: GeoPyramid) -> _Points:
-    plan, finest = index.plan, geo.pyramid.mesh(geo.pyramid.n_levels)
-    cells, points = cells_of(plan, finest), finest.vertices.copy()
-    if geo.origin.points is not None:
-        points = geo.origin.points.points_for_errors(finest, geo.frame)
-        cells = np.concatenate([cells, cells[geo.origin.points.representative]])
-    rows, columns = np.divmod(cells, plan.shape[1])
-    cells[~plan.is_shared(tile, rows, columns)] = -1
-    heights = points[:, 2].copy()
-    points[:, 2] = 0.0
-    return _Points(points, heights, finest.vertices[:, 2], cells)
 
 
 def _errors_on(mesh: TriangleMesh, places: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -178,7 +149,7 @@ def _errors_on(mesh: TriangleMesh, places: NDArray[np.float64]) -> NDArray[np.fl
 
 
 def _counted(
-    area: Area, mesh: TriangleMesh, points: _Points, below: NDArray[np.float64]
+    area: Area, mesh: TriangleMesh, points: InputPoints, below: NDArray[np.float64]
 ) -> PointErrors:
     """Return the errors of the points that count: those of the area, or under its triangles."""
     if area.shape is None:

@@ -10,6 +10,7 @@ from gis.samples import hills, write_las, write_tif
 
 from wavelet_gis.errors import CrsError
 from wavelet_gis.io.atomic import new_folder
+from wavelet_gis.io.read_back import write_text
 
 
 def test_tiles_of_a_dem_and_of_its_pyramid(done, tmp_path):
@@ -106,5 +107,5 @@ def test_a_set_that_cannot_take_its_place_leaves_the_old_one(tmp_path, monkeypat
 
     monkeypatch.setattr(os, "replace", fails)
     with pytest.raises(PermissionError), new_folder(target, "layer.json", overwrite=True) as made:
-        (made / "layer.json").write_text("new")
+        write_text(made / "layer.json", "new")
     assert (target / "layer.json").read_text() == "old"

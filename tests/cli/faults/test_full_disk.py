@@ -15,6 +15,7 @@ import os
 import pkgutil
 import shutil
 import subprocess
+from pathlib import Path
 
 import numpy as np
 import pyogrio
@@ -180,3 +181,42 @@ def test_a_disk_that_is_full(command, name, options, sources, tiny_disk, tmp_pat
     assert "free there" in err or "disk full" in err, err
     assert (folder / name).read_bytes() == b"old"
     assert [path.name for path in folder.iterdir()] == [name]
+
+
+def contents(folder):
+    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_a_tile_set_for_globes_that_does_not_fit(sources, tmp_path, capfd):
+    line = ["terrain", str(sources["dem"]), str(tmp_path / "x"), "--overwrite", "--quiet"]
+    assert main(line) == 0
+    old = contents(tmp_path)
+    sizes = sorted({len(content) for content in old.values()})
+    capfd.readouterr()
+    for limit in sorted({FIRST, sizes[-2] - 1, sizes[-1] - 1}):
+        with files_limited_to(limit):
+            code = main(line)
+        err = capfd.readouterr().err
+        assert code == 1, limit
+        assert err.startswith("terrain-wavelets: error: ")
+        assert err.count("\n") == 1, err
+        assert "unforeseen" not in err
+        assert ".terrain-wavelets-" not in err, err
+        assert contents(tmp_path) == old, limit
+
+
+def test_a_tile_set_for_globes_on_a_full_disk(sources, tiny_disk, tmp_path, capfd):
+    line = ["terrain", str(sources["dem"]), str(tmp_path / "x"), "--overwrite", "--quiet"]
+    assert main(line) == 0
+    files = contents(tmp_path / "x").values()
+    pages = sum(-(-len(content) // 4096) * 4096 for content in files)
+    folder = tiny_disk(int(0.9 * pages / 1024))
+    (folder / "x").mkdir()
+    (folder / "x" / "layer.json").write_bytes(b"old")
+    line[2] = str(folder / "x")
+    capfd.readouterr()
+    assert main(line) == 1
+    err = capfd.readouterr().err
+    assert err.count("\n") == 1, err
+    assert "No space left" in err or "free there" in err or "disk full" in err, err
+    assert contents(folder) == {Path("x", "layer.json"): b"old"}

@@ -69,7 +69,9 @@ def errors_at_zoom(folder, zoom, points):
     return largest, n_uncovered
 
 
-@pytest.mark.parametrize("source", ["dem", "pyramid", "lowest", "mean", "cloud pyramid"])
+@pytest.mark.parametrize(
+    "source", ["dem", "pyramid", "lowest", "mean", "cloud pyramid", "lowest tiles", "mean tiles"]
+)
 def test_the_errors_of_every_zoom(source, tmp_path, done):
     if source in ("dem", "pyramid"):
         path, points = dem_with_everything(tmp_path)
@@ -77,12 +79,17 @@ def test_the_errors_of_every_zoom(source, tmp_path, done):
     else:
         path, points = cloud_with_everything(tmp_path)
         options = ["--crs", UTM]
-    if source in ("lowest", "mean"):
-        options += ["--duplicates", source]
+    if source.startswith(("lowest", "mean")):
+        options += ["--duplicates", source.split()[0]]
     if source.endswith("pyramid"):
         pyramid = tmp_path / "p.gpkg"
         assert main(["analyse", str(path), str(pyramid), *options, "--levels", "3", "--quiet"]) == 0
         path, options = pyramid, []
+    if source.endswith("tiles"):
+        folder = tmp_path / "t"
+        size = ["--tile", "820", "--levels", "3", "--workers", "1", "--quiet"]
+        assert main(["tile", str(path), str(folder), *options, *size]) == 0
+        path, options = folder / "index.gpkg", []
     limits = ("--max-error", "1", "--max-zoom", "16")
     told = done("terrain", path, tmp_path / "out", *limits, *options, "--json").figures
     to_degrees = Transformer.from_crs(UTM, "EPSG:4326", always_xy=True)

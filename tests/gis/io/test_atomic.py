@@ -9,7 +9,7 @@ import pytest
 
 from wavelet_core import Cancelled
 from wavelet_gis.errors import CrsWarning, OutputFileError, TerrainWarning
-from wavelet_gis.io.atomic import check_output, new_file
+from wavelet_gis.io.atomic import check_output, ensure_folder, new_file, new_folder
 from wavelet_gis.io.read_back import read_back, write_text
 
 
@@ -245,3 +245,110 @@ def test_a_check_may_be_stopped(tmp_path):
     with pytest.raises(Cancelled):
         write()
     assert names_in(tmp_path) == []
+
+
+def finish_folder(path, text, **options):
+    with new_folder(path, "index.txt", **options) as scratch:
+        (scratch / "below").mkdir()
+        write_text(scratch / "below" / "a.txt", text)
+        write_text(scratch / "index.txt", text)
+
+
+@pytest.mark.parametrize("damage", [lambda b: b[:-1], lambda b: b"", lambda b: b[:-1] + b"?"])
+def test_a_folder_with_a_file_that_does_not_read_back_replaces_nothing(tmp_path, damage):
+    """Nothing was read back there, so that a full disk could lose tiles without a word."""
+    finish_folder(tmp_path / "out", "old")
+
+    def write():
+        with new_folder(tmp_path / "out", "index.txt", overwrite=True) as scratch:
+            (scratch / "below").mkdir()
+            file = scratch / "below" / "a.txt"
+            write_text(file, "new and whole")
+            write_text(scratch / "index.txt", "new")
+            file.write_bytes(damage(file.read_bytes()))
+
+    with pytest.raises(OutputFileError, match=r"out/below/a\.txt: what was written does not read"):
+        write()
+    assert (tmp_path / "out" / "below" / "a.txt").read_text() == "old"
+    assert names_in(tmp_path) == ["out"]
+
+
+def test_a_folder_with_a_file_that_cannot_be_checked_is_refused(tmp_path):
+    def write():
+        with new_folder(tmp_path / "out", "index.txt") as scratch:
+            (scratch / "index.txt").write_text("unchecked")
+
+    with pytest.raises(OutputFileError, match=r"index\.txt: the writer gave no way to check"):
+        write()
+    assert names_in(tmp_path) == []
+
+
+def test_all_of_a_folder_is_synced_before_it_takes_its_place(tmp_path, monkeypatch):
+    synced = []
+    sync, replace = os.fsync, os.replace
+
+    def noted(descriptor):
+        synced.append(os.fstat(descriptor).st_ino)
+        sync(descriptor)
+
+    def moved(source, destination):
+        files = [p for p in (source, *source.rglob("*")) if os.path.isfile(p)]
+        assert len(files) == 2
+        assert {p.stat().st_ino for p in (source, source / "below", *files)} <= set(synced)
+        replace(source, destination)
+
+    monkeypatch.setattr(os, "fsync", noted)
+    monkeypatch.setattr(os, "replace", moved)
+    finish_folder(tmp_path / "out", "new")
+    assert tmp_path.stat().st_ino == synced[-1]
+
+
+def test_a_link_to_a_folder_is_written_through_and_stays(tmp_path):
+    """The link itself was replaced by the folder."""
+    (tmp_path / "there").mkdir()
+    finish_folder(tmp_path / "there" / "real", "old")
+    (tmp_path / "link").symlink_to("there/real")
+    with pytest.raises(OutputFileError, match="this folder exists"):
+        finish_folder(tmp_path / "link", "new")
+    finish_folder(tmp_path / "link", "new", overwrite=True)
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "there" / "real" / "index.txt").read_text() == "new"
+    assert names_in(tmp_path / "there") == ["real"]
+    (tmp_path / "lost").symlink_to("absent")
+    with pytest.raises(OutputFileError, match="a link to absent, which is not there"):
+        finish_folder(tmp_path / "lost", "new")
+    finish_folder(tmp_path / "lost", "new", overwrite=True)
+    assert (tmp_path / "lost").is_symlink()
+    assert (tmp_path / "absent" / "below" / "a.txt").read_text() == "new"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes and owners of POSIX")
+def test_a_replaced_folder_keeps_mode_and_owner(tmp_path):
+    path = tmp_path / "out"
+    finish_folder(path, "old")
+    path.chmod(0o750)
+    if os.geteuid() == 0:
+        os.chown(path, 1234, 4321)
+    before = path.stat()
+    finish_folder(path, "new", overwrite=True)
+    after = path.stat()
+    assert (path / "index.txt").read_text() == "new"
+    assert (after.st_mode, after.st_uid, after.st_gid) == (
+        before.st_mode,
+        before.st_uid,
+        before.st_gid,
+    )
+
+
+def test_folders_that_files_are_added_to(tmp_path):
+    (tmp_path / "link").symlink_to("absent")
+    with pytest.raises(OutputFileError, match="a link to absent, which is not there"):
+        ensure_folder(tmp_path / "link")
+    (tmp_path / "absent").mkdir()
+    assert ensure_folder(tmp_path / "link") == tmp_path / "link"
+    (tmp_path / "file").write_text("a")
+    with pytest.raises(OutputFileError, match="this is a file"):
+        ensure_folder(tmp_path / "file")
+    with pytest.raises(OutputFileError, match="no such folder"):
+        ensure_folder(tmp_path / "no" / "where")
+    assert ensure_folder(tmp_path / "new").is_dir()

@@ -512,6 +512,9 @@ def test_a_polygon_is_what_reaches_into_it(tiled, tmp_path):
     assert shapely.union_all(faces).buffer(1e-3).contains(triangle)
     box = wg.extract_region(tiled.index, level=level, bbox=triangle.bounds)
     assert region.surface.mesh.n_faces < box.surface.mesh.n_faces
+    square = geopandas.GeoDataFrame(geometry=[shapely.box(*triangle.bounds)], crs="EPSG:32632")
+    same = wg.extract_region(tiled.index, level=level, polygon=square)
+    assert same.surface.mesh == box.surface.mesh  # there was another rule for boxes
     with pytest.raises(OptionError, match="give one of bbox and polygon"):
         wg.extract_region(tiled.index, bbox=(0, 0, 1, 1), polygon=frame)
     with pytest.raises(OptionError, match="give one of level and max_error"):

@@ -76,7 +76,7 @@ def _of_tiles(arguments: argparse.Namespace, console: Console) -> None:
 
 def _of_cloud_tiles(arguments: argparse.Namespace, console: Console, index: TileIndex) -> None:
     from wavelet_gis.errors import OutputFileError
-    from wavelet_gis.io.atomic import check_output
+    from wavelet_gis.io.atomic import check_output, ensure_folder
     from wavelet_gis.tiles.cloud.restore import n_chosen, names_of_sources, restore_source
     from wavelet_gis.workflows.reconstruct import check_restored_output
 
@@ -92,7 +92,7 @@ def _of_cloud_tiles(arguments: argparse.Namespace, console: Console, index: Tile
                 f"{output}: this is a file, and the tiles are of {len(names)} clouds; name a "
                 "folder."
             )
-        output.mkdir(exist_ok=True)
+        ensure_folder(output)
         places = [output / name for name in names]
         for place, file in zip(places, index.plan.files, strict=True):
             check_output(place, overwrite=arguments.overwrite, inputs=(file.path,))

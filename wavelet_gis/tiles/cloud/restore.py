@@ -152,7 +152,7 @@ def loose_points(index: TileIndex, piece: Piece) -> tuple[NDArray[np.float64], N
     Returns
     -------
     places : (n, 3) float64
-        In the working frame, with z of 0; without what is left aside, such as noise.
+        In the working frame; without what is left aside, such as noise.
     cells : (n,) int64
     """
     plan = index.plan
@@ -172,7 +172,8 @@ def loose_points(index: TileIndex, piece: Piece) -> tuple[NDArray[np.float64], N
     rows = used["Y"].astype(np.int64) - lattice.first[0]
     columns = used["X"].astype(np.int64) - lattice.first[1]
     x, y = plan.places(rows, columns)
-    places = np.column_stack([frame.local_x(x), frame.local_y(y), np.zeros(len(used))])
+    z = used["Z"] * layout.scales[2] + layout.offsets[2]
+    places = np.column_stack([frame.local_x(x), frame.local_y(y), frame.local_z(z)])
     return places, rows * plan.shape[1] + columns
 
 

@@ -17,6 +17,7 @@ from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.crs.projection import projected
 from wavelet_gis.errors import CrsError, InputFileError, TerrainWarning
 from wavelet_gis.io.atomic import new_folder
+from wavelet_gis.io.read_back import write_bytes, write_text
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import warn
@@ -322,7 +323,7 @@ class _Writer:
         )
         bounds = (west, south, east, north)
         layer = _layer(ranges, bounds, name, self._has_normals)
-        (self._folder / LAYER).write_text(json.dumps(layer, indent=1) + "\n", "utf-8")
+        write_text(self._folder / LAYER, json.dumps(layer, indent=1) + "\n")
         return Tileset(bounds, tuple(figures[::-1]), plan.height_step)
 
     def _warn_of_errors(self, figures: list[ZoomFigures], offs: list[_Off], name: str) -> None:
@@ -384,7 +385,7 @@ class _Writer:
             )
             path = self._folder / str(tile.zoom) / str(tile.x) / f"{tile.y}.terrain"
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
+            write_bytes(path, content)
             n_bytes += len(content)
         return n_bytes
 
