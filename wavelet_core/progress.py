@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 
+import numpy as np
+
 from .errors import Cancelled
 
 #: Called with a fraction in [0, 1]; the work stops with :class:`Cancelled` when it returns False.
@@ -32,7 +34,10 @@ def report(
     Cancelled
         ``progress`` returned False.
     """
-    if progress is not None and progress(fraction) is False:
+    if progress is None:
+        return
+    answer = progress(fraction)
+    if isinstance(answer, bool | np.bool_) and not answer:  # None, as of most functions, goes on
         raise Cancelled(message)
 
 
