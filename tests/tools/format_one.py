@@ -11,8 +11,8 @@ from wavelet_gis.io.geopackage import (
     open_for_writing,
     register_attributes_table,
 )
-from wavelet_gis.io.pyramid import metadata_tables, pyramid_parts
-from wavelet_gis.io.pyramid.array_codec import encode_array, header_of
+from wavelet_gis.io.pyramid import listed_pyramid, metadata_tables, pyramid_parts
+from wavelet_gis.io.pyramid.codecs.array_codec import encode_array, header_of
 from wavelet_gis.model.exact_restore import exact_column
 
 
@@ -20,7 +20,7 @@ def write_format_one(path, geo):
     """Write a pyramid with lists of its steps, and with what rounding loses."""
     geo = replace(geo, origin=_with_ledger(geo))
     source, arrays = geo.origin.to_parts()
-    arrays |= pyramid_parts.listed_arrays(geo.pyramid)
+    arrays |= listed_pyramid.listed_arrays(geo.pyramid)
     if geo.pyramid.locked is not None:
         arrays["locked"] = geo.pyramid.locked
     metadata, _ = pyramid_parts.pyramid_to_parts(geo)

@@ -38,7 +38,7 @@ from tools.pyramid_surgery import STRIP, opened, operate, reseal  # noqa: E402
 
 from wavelet_core.errors import WaveletError  # noqa: E402
 from wavelet_core.lifting import recorded  # noqa: E402
-from wavelet_gis.io.pyramid.array_codec import encode_array, header_of  # noqa: E402
+from wavelet_gis.io.pyramid.codecs.array_codec import encode_array, header_of  # noqa: E402
 from wavelet_gis.io.pyramid.metadata_tables import require_tables  # noqa: E402
 from wavelet_gis.io.pyramid.pyramid_file import (  # noqa: E402
     read_input,
@@ -222,8 +222,8 @@ def _much_in_little():
 
 def _changed(connection, array_id, generator):
     """Return the array with one number changed a little, or much."""
-    from wavelet_gis.io.pyramid.array_codec import decode_array
     from wavelet_gis.io.pyramid.array_tables import read_entries
+    from wavelet_gis.io.pyramid.codecs.array_codec import decode_array
 
     columns = [row[1] for row in connection.execute("PRAGMA table_info(wavelet_arrays)")]
     entries = read_entries(connection, with_checksums="checksum" in columns)

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 
 from wavelet_core.errors import WaveletError
 from wavelet_gis.io.pyramid import metadata_tables
-from wavelet_gis.io.pyramid.array_codec import array_checksum, decode_array
 from wavelet_gis.io.pyramid.array_tables import read_entries
+from wavelet_gis.io.pyramid.codecs.array_codec import array_checksum, decode_array
 
 
 @contextmanager

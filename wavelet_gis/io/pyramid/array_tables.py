@@ -2,9 +2,9 @@
 
 ``wavelet_arrays`` (name, dtype, shape, filter, chunk_rows, checksum) has a row for each array, and
 ``wavelet_chunks`` (array_id, sequence, data) its contents; see
-`wavelet_gis.io.pyramid.array_codec`. The first table is read and judged whole before the second is
-touched, so that a reader's memory is bounded by the size of the file and not by what the file
-claims.
+`wavelet_gis.io.pyramid.codecs.array_codec`. The first table is read and judged whole before the
+second is touched, so that a reader's memory is bounded by the size of the file and not by what the
+file claims.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from wavelet_core.errors import PyramidError
 from wavelet_gis._fields import parse_json
-from wavelet_gis.io.pyramid.array_codec import (
+from wavelet_gis.io.pyramid.codecs.array_codec import (
     FILTERS,
     MAX_EXPANSION,
     ArrayHeader,

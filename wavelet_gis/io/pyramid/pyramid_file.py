@@ -36,13 +36,13 @@ from wavelet_gis.io.geopackage import (
     open_untrusted,
     register_attributes_table,
 )
-from wavelet_gis.io.pyramid.array_codec import work_of
 from wavelet_gis.io.pyramid.array_tables import (
     StoredArrays,
     WrittenArrays,
     read_entries,
     write_arrays,
 )
+from wavelet_gis.io.pyramid.codecs.array_codec import work_of
 from wavelet_gis.io.pyramid.metadata_tables import (
     FORMAT_VERSION,
     FORMATS_READ,

@@ -24,7 +24,7 @@ from wavelet_core.partition.questions import (
     Answers,
 )
 from wavelet_gis._fields import Fields
-from wavelet_gis.io.pyramid.face_codec import (
+from wavelet_gis.io.pyramid.codecs.face_codec import (
     N_EDGE_CLASSES,
     FaceRecord,
     decode_faces,

@@ -11,7 +11,7 @@ from wavelet_core import Progress
 from wavelet_core.progress import part_of, report
 from wavelet_gis._fields import Fields
 from wavelet_gis.io.pyramid.array_tables import StoredArrays
-from wavelet_gis.io.pyramid.grid_codec import (
+from wavelet_gis.io.pyramid.codecs.grid_codec import (
     DIVISORS,
     Residuals,
     decode_grid,

@@ -13,8 +13,9 @@ from hypothesis.extra import numpy as hnp
 
 from wavelet_core.errors import Cancelled, PyramidError
 from wavelet_gis.io.geopackage import create_geopackage, open_for_writing
-from wavelet_gis.io.pyramid import array_codec
-from wavelet_gis.io.pyramid.array_codec import (
+from wavelet_gis.io.pyramid.array_tables import SCHEMA, write_arrays
+from wavelet_gis.io.pyramid.codecs import array_codec
+from wavelet_gis.io.pyramid.codecs.array_codec import (
     ArrayHeader,
     Tally,
     decode_array,
@@ -22,7 +23,6 @@ from wavelet_gis.io.pyramid.array_codec import (
     header_of,
     work_of,
 )
-from wavelet_gis.io.pyramid.array_tables import SCHEMA, write_arrays
 
 ANY_ARRAY = st.sampled_from(["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8"]).flatmap(
     lambda code: hnp.arrays(code, hnp.array_shapes(min_dims=1, max_dims=2, min_side=0, max_side=30))

@@ -8,7 +8,7 @@ import pytest
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.errors import Cancelled, PyramidError
 from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
-from wavelet_gis.io.pyramid.face_codec import decode_faces, encode_faces
+from wavelet_gis.io.pyramid.codecs.face_codec import decode_faces, encode_faces
 
 
 def scattered(n=500, seed=0, side=10_000):

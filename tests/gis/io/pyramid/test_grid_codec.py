@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from wavelet_core.errors import Cancelled, PyramidError
-from wavelet_gis.io.pyramid.grid_codec import (
+from wavelet_gis.io.pyramid.codecs.grid_codec import (
     decode_grid,
     encode_grid,
     integers_of,

@@ -17,7 +17,7 @@ from tools.pyramid_surgery import STRIP, operate, reseal
 
 from wavelet_core.errors import PyramidError, WaveletError
 from wavelet_gis.errors import InputFileError
-from wavelet_gis.io.pyramid.array_codec import encode_array, header_of
+from wavelet_gis.io.pyramid.codecs.array_codec import encode_array, header_of
 from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary
 
 listed = pytest.mark.parametrize(

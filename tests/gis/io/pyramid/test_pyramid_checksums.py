@@ -15,8 +15,8 @@ from tools.pyramid_surgery import STRIP, operate
 from wavelet_core.errors import PyramidError
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.pyramid import pyramid_file
-from wavelet_gis.io.pyramid.array_codec import encode_array
 from wavelet_gis.io.pyramid.array_tables import StoredArrays, read_entries
+from wavelet_gis.io.pyramid.codecs.array_codec import encode_array
 from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary, write_pyramid
 
 

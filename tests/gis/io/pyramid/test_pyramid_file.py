@@ -209,7 +209,7 @@ LIGHT = [
     "model.points.cloud",
     "model.points.origin",
     "model.exact_restore",
-    "io.pyramid.array_codec",
+    "io.pyramid.codecs.array_codec",
     "io.pyramid.array_tables",
     "io.geopackage",
     "model.geo_pyramid",

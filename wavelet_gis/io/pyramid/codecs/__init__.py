@@ -1,0 +1,1 @@
+"""Arrays, faces and grids as few bytes, and back."""
