@@ -56,6 +56,7 @@ class Request:
         self.feedback = feedback or QgsProcessingFeedback()
         #: Sizes and errors of what was made, for the metadata of every layer.
         self.figures: dict[str, Any] = {}
+        self._reached = 0.0
 
     # What was asked for.
 
@@ -199,8 +200,11 @@ class Request:
         require_running(self.feedback)
 
     def progress(self, start: float = 0.0, stop: float = 1.0) -> Callable[[float], bool]:
-        """Return a progress function that drives a part of QGIS's bar."""
-        return progress(self.feedback, start, stop)
+        """Return a progress function that drives a part of QGIS's bar.
+
+        The part begins no earlier than those before it ended, whichever outputs are wanted.
+        """
+        return progress(self.feedback, *self._part(start, stop))
 
     def computed(
         self, function: Callable[[Work], Result], start: float = 0.0, stop: float = 1.0
@@ -212,9 +216,14 @@ class Request:
         function : callable
             Takes a `plugin.qgis_io.background.Work`. It must neither write nor use layers.
         start, stop : float
-            The part of the bar that it drives.
+            The part of the bar that it drives; it begins no earlier than those before it ended.
         """
-        return computed(self.feedback, function, start, stop)
+        return computed(self.feedback, function, *self._part(start, stop))
+
+    def _part(self, start: float, stop: float) -> tuple[float, float]:
+        start = max(start, self._reached)
+        self._reached = max(start, stop)
+        return start, self._reached
 
     def _is_open(self, name: str) -> bool:
         definition = self.algorithm.parameterDefinition(name)

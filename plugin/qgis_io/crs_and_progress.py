@@ -34,8 +34,12 @@ def progress(
         Takes a fraction in [0, 1]; returns False once the user has cancelled.
     """
 
+    reached = 0.0
+
     def report(fraction: float) -> bool:
-        feedback.setProgress(100.0 * (start + (stop - start) * fraction))
+        nonlocal reached
+        reached = max(reached, fraction)  # work that gives up one way for another tells less again
+        feedback.setProgress(100.0 * (start + (stop - start) * reached))
         return not feedback.isCanceled()
 
     return report

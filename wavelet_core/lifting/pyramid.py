@@ -182,7 +182,12 @@ class Pyramid:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Pyramid):
             return NotImplemented
-        return are_equal(self, other) and all(map(np.array_equal, self._origin, other._origin))
+        ours, theirs = self._origin, other._origin
+        return (
+            are_equal(self, other)
+            and np.array_equal(ours.ids, theirs.ids)
+            and np.array_equal(ours.integrals, theirs.integrals)
+        )
 
     __hash__ = None  # type: ignore[assignment]  # as for meshes
 

@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from wavelet_core import OptionError, TriangleMesh, analyse, band_components, band_energies, synthetic
+from wavelet_core import (
+    OptionError,
+    TriangleMesh,
+    analyse,
+    band_components,
+    band_energies,
+    synthetic,
+)
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.lifting.linear_map import Transform
 from wavelet_core.metrics import level_errors, surface_errors

@@ -32,6 +32,14 @@ class TestSimplify:
         back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "b.tif")})
         assert back["EXACT"] == "yes"
 
+    def test_the_bar_never_runs_back_whichever_outputs_are_wanted(self, run, dem, tmp_path):
+        """The TIN began behind where the pyramid had ended."""
+        outputs = {"TIN": "TEMPORARY_OUTPUT", "OUTPUT": str(tmp_path / "p.gpkg")}
+        log = Log()
+        run("simplifydem", {"INPUT": dem, "VERTICES": 300, **outputs}, log)
+        assert max(log.fractions) >= 90
+        assert log.fractions == sorted(log.fractions)
+
     def test_fitted_heights_have_the_smaller_mean_square(self, run, dem):
         parameters = {"INPUT": dem, "VERTICES": 200, "TIN": "TEMPORARY_OUTPUT"}
         fitted, lifted = run("simplifydem", parameters), run("simplifydem", parameters | {"FIT": 0})

@@ -121,6 +121,14 @@ class TestClusters:
         summary = json.loads(Path(made["SUMMARY"]).read_text())
         assert [row["label"] for row in summary["clusters"]] == [0, 1]
 
+    def test_the_bar_never_runs_back_whichever_outputs_are_wanted(self, run, pyramid, tmp_path):
+        """The points began where the raster had begun, behind where it had ended."""
+        log = Log()
+        outputs = {"RASTER": str(tmp_path / "c.tif"), "OUTPUT": "TEMPORARY_OUTPUT"}
+        run("clusterdetails", {"INPUT": pyramid, "COUNT": 2, **outputs}, log)
+        assert max(log.fractions) > 90
+        assert log.fractions == sorted(log.fractions)
+
     def test_classes_are_learned_from_training_areas(self, run, pyramid, tmp_path):
         pytest.importorskip("sklearn")
         import processing
