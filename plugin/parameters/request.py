@@ -56,7 +56,7 @@ class Request:
         self.feedback = feedback or QgsProcessingFeedback()
         #: Sizes and errors of what was made, for the metadata of every layer.
         self.figures: dict[str, Any] = {}
-        self._reached = 0.0
+        self._shown = 0.0  # where the bar stands
 
     # What was asked for.
 
@@ -202,9 +202,18 @@ class Request:
     def progress(self, start: float = 0.0, stop: float = 1.0) -> Callable[[float], bool]:
         """Return a progress function that drives a part of QGIS's bar.
 
-        The part begins no earlier than those before it ended, whichever outputs are wanted.
+        The bar never runs back: which parts there are depends on the outputs that are wanted, and
+        what a file is read back by reports after all that was written to it.
         """
-        return progress(self.feedback, *self._part(start, stop))
+        start = max(start, self._shown)
+        stop = max(start, stop)
+        drive = progress(self.feedback)
+
+        def report(fraction: float) -> bool:
+            self._shown = max(self._shown, start + (stop - start) * fraction)
+            return drive(self._shown)
+
+        return report
 
     def computed(
         self, function: Callable[[Work], Result], start: float = 0.0, stop: float = 1.0
@@ -216,14 +225,11 @@ class Request:
         function : callable
             Takes a `plugin.qgis_io.background.Work`. It must neither write nor use layers.
         start, stop : float
-            The part of the bar that it drives; it begins no earlier than those before it ended.
+            The part of the bar that it drives.
         """
-        return computed(self.feedback, function, *self._part(start, stop))
-
-    def _part(self, start: float, stop: float) -> tuple[float, float]:
-        start = max(start, self._reached)
-        self._reached = max(start, stop)
-        return start, self._reached
+        start = max(start, self._shown)
+        self._shown = max(start, stop)
+        return computed(self.feedback, function, start, self._shown)
 
     def _is_open(self, name: str) -> bool:
         definition = self.algorithm.parameterDefinition(name)

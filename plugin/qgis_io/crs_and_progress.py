@@ -34,12 +34,8 @@ def progress(
         Takes a fraction in [0, 1]; returns False once the user has cancelled.
     """
 
-    reached = 0.0
-
     def report(fraction: float) -> bool:
-        nonlocal reached
-        reached = max(reached, fraction)  # work that gives up one way for another tells less again
-        feedback.setProgress(100.0 * (start + (stop - start) * reached))
+        feedback.setProgress(100.0 * (start + (stop - start) * fraction))
         return not feedback.isCanceled()
 
     return report

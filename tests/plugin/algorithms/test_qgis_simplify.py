@@ -1,6 +1,6 @@
 """A DEM to a TIN of fewer vertices, in a real QGIS."""
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -38,7 +38,8 @@ class TestSimplify:
         log = Log()
         run("simplifydem", {"INPUT": dem, "VERTICES": 300, **outputs}, log)
         assert max(log.fractions) >= 90
-        assert log.fractions == sorted(log.fractions)
+        steps = list(pairwise(log.fractions))
+        assert [step for step in steps if step[1] < step[0]] == []
 
     def test_fitted_heights_have_the_smaller_mean_square(self, run, dem):
         parameters = {"INPUT": dem, "VERTICES": 200, "TIN": "TEMPORARY_OUTPUT"}
