@@ -516,7 +516,7 @@ def _has_sizes(geo: GeoPyramid, metres: tuple[float, float]) -> bool:
 
 def _metre(geo: GeoPyramid) -> float:
     """Return a metre in the unit of the working frame, where that is known."""
-    return 1.0 if geo.system.kind == "geographic" else 1.0 / geo.system.horizontal_unit
+    return 1.0 / geo.system.working_unit
 
 
 def _noise_of(pyramid: Pyramid, finest: TriangleMesh, channel: str) -> float:
