@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .._validate import FloatArray
+from .._validate import FloatArray, IntArray
 from ..errors import OptionError
 from ..lifting.analyse import EXPECTED_KEPT, analyse
 from ..lifting.linear_map import Transform
@@ -21,6 +21,7 @@ from .gains import channel_index
 from .noise.model import Noise, RangeOption, noise_of
 from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
 from .noise.rounding import FILL_ROUNDS, ROUNDS_OF_SHARE, without_terraces
+from .noise.stripes import NO_LINE, STEPS_OF_STRIPES, check_lines
 from .noise.white import check_sigma, noise_columns, noise_gains
 from .undecimated import UndecimatedBank
 
@@ -48,6 +49,7 @@ def denoise(
     noise_range: RangeOption = 0.0,
     local_noise: bool = False,
     outliers: bool = False,
+    lines: ArrayLike | None = None,
     found: dict[str, Noise] | None = None,
 ) -> TriangleMesh:
     r"""Return the mesh with the noise taken out of its elevations or attributes.
@@ -82,9 +84,13 @@ def denoise(
         measured there, and ``sigma`` is its median.
     outliers : bool
         Replace values that stand out of their ring before all else.
+    lines : array_like of int, shape (n_vertices,), optional
+        A label for each vertex, such as its row, its scan line or its flight line, and -1 for none:
+        values have an offset for each line, which is found and taken out before all else. Lines of
+        fewer than 8 vertices keep theirs.
     found : dict, optional
         Is given the :class:`~wavelet_core.filtering.noise.model.Noise` of each channel: what was
-        estimated, and the outliers.
+        estimated, the outliers, and the offsets of lines.
 
     Returns
     -------
@@ -93,7 +99,7 @@ def denoise(
     Raises
     ------
     OptionError
-        An unknown channel, a negative sigma or range, no pyramid.
+        An unknown channel, a negative sigma or range, no pyramid, labels that are none.
     Cancelled
         ``progress`` returned False.
 
@@ -139,11 +145,13 @@ def denoise(
         raise OptionError("{0} is {given}; give 1 or more.", "n_pyramids", given=n_pyramids)
     if levels < 1:
         raise OptionError("{0} is {given}; give 1 or more.", "levels", given=levels)
+    line = None if lines is None else _lines(lines, locked, mesh.n_vertices)
     names = ("z", *mesh.attribute_names)
     chosen = {name: channel_index(names, name) for name in channels}
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
     meter = Meter(progress, "denoising was cancelled; nothing was kept.")
     n_steps = OUTLIER_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
+    n_steps += 0 if line is None else STEPS_OF_STRIPES
     meter.begin(0.0, BEFORE_PYRAMIDS, n_steps * len(chosen))
     noises = {}
     for name, c in chosen.items():
@@ -154,6 +162,7 @@ def denoise(
             noise_range=noise_range,
             local_noise=local_noise,
             outliers=outliers,
+            lines=line,
             seed=seed,
             tick=meter.tick,
         )
@@ -176,6 +185,12 @@ def denoise(
         columns[:, 1:].copy(),
         mesh.attribute_names,
     )
+
+
+def _lines(lines: ArrayLike, locked: ArrayLike | None, n_vertices: int) -> IntArray:
+    """Return the line of each vertex; those whose values stay are on none."""
+    line = check_lines(lines, n_vertices)
+    return line if locked is None else np.where(np.asarray(locked, dtype=bool), NO_LINE, line)
 
 
 def _is_above_rounding(noise: Noise, values: FloatArray) -> bool:
