@@ -6,7 +6,12 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 
+import numpy as np
+
 from .errors import Cancelled
+
+#: What an error says of work that was stopped.
+CANCELLED = "the work was cancelled; nothing was kept."
 
 #: Called with a fraction in [0, 1]; the work stops with :class:`Cancelled` when it returns False.
 Progress = Callable[[float], bool | None]
@@ -15,7 +20,7 @@ Progress = Callable[[float], bool | None]
 def report(
     progress: Progress | None,
     fraction: float,
-    message: str = "the work was cancelled; nothing was kept.",
+    message: str = CANCELLED,
 ) -> None:
     """Pass a fraction on to the caller's progress function, if there is one.
 
@@ -32,7 +37,10 @@ def report(
     Cancelled
         ``progress`` returned False.
     """
-    if progress is not None and progress(fraction) is False:
+    if progress is None:
+        return
+    answer = progress(fraction)
+    if isinstance(answer, bool | np.bool_) and not answer:  # None, as of most functions, goes on
         raise Cancelled(message)
 
 
@@ -71,9 +79,11 @@ def watched(look: Callable[[float], None]) -> Iterator[None]:
 
 
 def watched_part(
-    progress: Progress | None, start: float, stop: float, message: str
+    progress: Progress | None, start: float = 0.0, stop: float = 1.0, message: str = CANCELLED
 ) -> AbstractContextManager[None]:
-    """Have the long steps inside a ``with`` block tell a part of the work's progress.
+    """Have the long steps inside a ``with`` block report a part of the work's progress.
+
+    Several steps there each begin anew; what is reported does not run back.
 
     Parameters
     ----------
@@ -85,7 +95,14 @@ def watched_part(
     """
     if progress is None:
         return nullcontext()
-    return watched(lambda share: report(progress, start + (stop - start) * share, message))
+    highest = start
+
+    def look(share: float) -> None:
+        nonlocal highest
+        highest = max(highest, start + (stop - start) * share)
+        report(progress, highest, message)
+
+    return watched(look)
 
 
 def report_share(share: float) -> None:

@@ -278,7 +278,7 @@ class AnalyseTin(AnalysisAlgorithm):
             request.transforms,
             request.feedback,
         )
-        inside = constraints.contains(points.xyz[:, :2])
+        inside = request.computed(lambda _: constraints.contains(points.xyz[:, :2]), 0.03, 0.05)
         if not inside.any():
             raise QgsProcessingException(
                 tr("No point is inside the clip polygon; check that the layers overlap.")

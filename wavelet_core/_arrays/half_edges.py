@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._kernels.half_edges import MAX_RING, HalfEdges
+from ..progress import report_share
 
 
 class Rings(NamedTuple):
@@ -71,9 +72,12 @@ def find_twins(start, stop, indptr, star, mesh):
     n = int(origin.max(initial=0)) + 1
     # neighbours in this order are twins: no search, which takes four times as long on scattered ids
     edge = np.minimum(origin, head) * n + np.maximum(origin, head)
+    report_share(0.1)
     order = np.argsort(edge, kind="stable")
+    report_share(0.6)
     sizes = np.diff(np.flatnonzero(np.diff(edge[order], prepend=-1, append=-1)))
     first = np.cumsum(sizes) - sizes
+    report_share(0.8)
     mesh.twin[:] = -1
     one, other = order[first[sizes == 2]], order[first[sizes == 2] + 1]
     mesh.twin[one], mesh.twin[other] = other, one
@@ -102,6 +106,7 @@ def find_outgoing(start, stop, indptr, star, mesh, n_fans):
     n_vertices = len(mesh.outgoing)
     degree = np.diff(indptr)
     set_outgoing(np.arange(len(mesh.origin)), mesh)
+    report_share(0.3)
     is_open = mesh.twin < 0
     n_open = np.bincount(mesh.origin[is_open], minlength=n_vertices)
     walked = np.zeros(n_vertices, dtype=np.int64)
@@ -113,6 +118,7 @@ def find_outgoing(start, stop, indptr, star, mesh, n_fans):
         goes_on = (half_edge >= 0) & (half_edge != mesh.outgoing[active])
         goes_on &= walked[active] < degree[active]
         active, half_edge = active[goes_on], half_edge[goes_on]
+        report_share(1.0 - 0.7 * len(active) / n_vertices)
     n_fans[:] = np.where(degree == 0, 0, np.where((walked == degree) & (n_open < 2), 1, 2))
 
 

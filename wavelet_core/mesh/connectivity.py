@@ -73,9 +73,12 @@ def edges_of(faces: NDArray[np.integer]) -> tuple[NDArray[np.int64], NDArray[np.
     >>> edges.tolist(), n_faces.tolist()
     ([[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]], [1, 1, 2, 1, 1])
     """
-    sides = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    edges, n_faces = np.unique(sides, axis=0, return_counts=True)
-    return edges.astype(np.int64), n_faces
+    tails, heads = faces.ravel().astype(np.int64), np.roll(faces, -1, axis=1).ravel()
+    n = int(tails.max(initial=0)) + 1
+    # one number for each edge: rows would be sorted with the interpreter held, for seconds
+    sides = np.minimum(tails, heads) * n + np.maximum(tails, heads)
+    keys, n_faces = np.unique(sides, return_counts=True)
+    return np.column_stack(np.divmod(keys, n)), n_faces
 
 
 def stars_of(

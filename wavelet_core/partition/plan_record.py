@@ -16,7 +16,7 @@ from .._kernels._jit import run_in_ranges
 from .._kernels.surface_choice import OUT_OF_QUESTION, find_first
 from .._validate import FloatArray
 from ..errors import PyramidError
-from ..progress import Progress, report
+from ..progress import Progress, report, watched_part
 from ._mutable_level import CollapseStep
 from .questions import places_of_targets, targets_at
 from .recorded import Manner, RecordedLevel, Start
@@ -50,8 +50,7 @@ def places_of_steps(
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
     """
-    level = _start(plan, faces, locked, outline_tolerance)
-    report(progress, _OF_START)
+    level = _start(plan, faces, locked, outline_tolerance, progress)
     places = []
     for step in steps:
         if len(step.odd) == 0 or not (np.diff(step.odd) > 0).all():
@@ -64,8 +63,7 @@ def places_of_steps(
         if taken is None or not _are_alike(taken, step):
             return None
         places.append(found.astype(np.uint8))
-        share = 1.0 - level.n_vertices / len(plan)
-        report(progress, _OF_START + (1.0 - _OF_START) * share)
+        report(progress, _share_of(level, plan))
     return places
 
 
@@ -75,6 +73,7 @@ def steps_at_places(
     locked: NDArray[np.bool_],
     outline_tolerance: float,
     moves: Sequence[tuple[NDArray[np.int32], NDArray[np.uint8]]],
+    progress: Progress | None = None,
 ) -> Iterator[CollapseStep]:
     """Yield the steps, the finest first, without details, of vertices that go to such places.
 
@@ -84,13 +83,15 @@ def steps_at_places(
         As for `places_of_steps`; a manifold, counter-clockwise in plan.
     moves : sequence of (odd, places)
         Of each step, the finest first; of any origin.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
     PyramidError
         They describe no steps of an analysis.
     """
-    level = _start(plan, faces, locked, outline_tolerance)
+    level = _start(plan, faces, locked, outline_tolerance, progress)
     for odd, places in moves:
         is_sound = (
             len(odd) > 0
@@ -102,6 +103,7 @@ def steps_at_places(
         step = _take(level, odd, places.astype(np.int32)) if is_sound else None
         if step is None:
             raise PyramidError("collapses that no surface allows; the file is damaged.")
+        report(progress, _share_of(level, plan))
         yield step
 
 
@@ -110,11 +112,20 @@ def _start(
     faces: NDArray[np.int32],
     locked: NDArray[np.bool_],
     outline_tolerance: float,
+    progress: Progress | None,
 ) -> RecordedLevel:
     centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
     heights, integrals = np.zeros((len(plan), 1)), np.ones(len(plan))
     start = Start(plan - centre, heights, integrals, faces, locked)
-    return RecordedLevel(start, Manner(False, outline_tolerance, 0.0))
+    with watched_part(progress, 0.0, _OF_START):
+        level = RecordedLevel(start, Manner(False, outline_tolerance, 0.0))
+    report(progress, _OF_START)
+    return level
+
+
+def _share_of(level: RecordedLevel, plan: FloatArray) -> float:
+    """Return how much of the work is done, by the vertices that are gone."""
+    return _OF_START + (1.0 - _OF_START) * (1.0 - level.n_vertices / len(plan))
 
 
 def _take(

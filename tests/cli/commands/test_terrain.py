@@ -4,6 +4,7 @@ import json
 import os
 import warnings
 
+import numpy as np
 import pytest
 import rasterio
 from gis.samples import hills, write_las, write_tif
@@ -109,3 +110,17 @@ def test_a_set_that_cannot_take_its_place_leaves_the_old_one(tmp_path, monkeypat
     with pytest.raises(PermissionError), new_folder(target, "layer.json", overwrite=True) as made:
         write_text(made / "layer.json", "new")
     assert (target / "layer.json").read_text() == "old"
+
+
+def test_the_bar_moves_evenly_over_all_zooms(tmp_path):
+    """Counted by tiles, it stood still where few tiles have all the points, at the first zooms."""
+    import wavelet_gis as wg
+
+    seen = []
+    dem = write_tif(tmp_path / "dem.tif", hills(60, 70))
+    tiles = wg.terrain_tiles(wg.open(dem), tmp_path / "out", progress=seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == pytest.approx(1.0)
+    coarse = [share for share in seen if share > 0.5]
+    assert len(coarse) > 2 * len(tiles.zooms)
+    assert max(np.diff(coarse)) < 0.6 / len(tiles.zooms)

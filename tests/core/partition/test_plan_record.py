@@ -83,11 +83,16 @@ def test_collapses_that_no_analysis_takes_are_refused(name):
 
 
 def test_places_of_every_step_are_reported():
-    """Half a million points took 6 s without a word, and as many when they were read back."""
+    """Half a million points took 6 s without a word, and as many when they were read back.
+
+    The half-edges of the finest level alone still took 1.4 s on whole arrays.
+    """
     pyramid = analyse(random_delaunay(300, seed=2))
     seen = []
-    places_of_steps(*finest(pyramid), collapses(pyramid), seen.append)
-    assert len(seen) == pyramid.n_levels + 1
+    with engine("arrays"):
+        places_of_steps(*finest(pyramid), collapses(pyramid), seen.append)
+    assert len(seen) >= pyramid.n_levels + 5
+    assert len([share for share in seen if share < 0.2]) >= 4
     assert seen == sorted(seen)
     with pytest.raises(Cancelled):
         places_of_steps(*finest(pyramid), collapses(pyramid), lambda fraction: fraction < 0.5)

@@ -18,21 +18,27 @@ from .white import NORMAL_MAD
 NO_LINE = -1
 #: Lines of fewer vertices have no offset.
 LEAST_OF_LINE = 8
-#: Smoothings that lead from one scale of details to the next.
+#: Smoothings that lead from one scale of details to the next. With those of a scale more the errors
+#: of the offsets, on nine windows of seven DEMs as for all numbers here, are 2 % larger on the
+#: average at the same caution, and take three times as long.
 ROUNDS_OF_SCALES = (1, 2, 4)
 #: Rounds of averaging over rings by which relief is measured, at the finest scale and for each
-#: smoothing more.
+#: smoothing more; 1 and 8 at the finest give the same errors to 2 %.
 RELIEF_ROUNDS, RELIEF_ROUNDS_MORE = 3, 2
 #: Least relief, relative to the median one, by its square.
 LEAST_RELIEF = 1e-3
-#: Details beyond so many deviations count less and less.
+#: Details beyond so many deviations count less and less; 1 leaves 2 % more error, 4 1 % less.
 ROBUST_DEVIATIONS = 2.0
-#: Tiles of the map along each axis: between them the details of a line are independent.
+#: Tiles of the map along each axis: between them the details of a line are independent. 8 and 16
+#: give the same errors to 3 %.
 TILES = 12
 #: Tiles' worth of belief in the mean of all lines, where the variance of one line is estimated.
 TILES_OF_ALL = 12
 #: How much less the details count together than if those of neighbouring lines were independent.
+#: The error of strong offsets is least at 12 on the average, 7 % above that at 5 and 31 % at 2;
+#: that of weak ones grows with it: 5 to 9 % of a deviation at 3, 7 to 10 % at 12.
 CAUTION = 6.0
+#: Passes of the weights; 3 leave 3 % more error, 8 the same.
 PASSES = 5
 #: Vertices whose share of the normal equations is summed at once.
 ROWS_AT_ONCE = 100_000

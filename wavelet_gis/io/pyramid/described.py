@@ -14,8 +14,6 @@ from wavelet_core.progress import watched_part
 from wavelet_gis._fields import Fields
 from wavelet_gis.io.pyramid.array_tables import StoredArrays
 
-CANCELLED = "the work was cancelled; nothing was kept."
-
 __all__ = ["locked_from", "parameters_from", "require_surface", "stop_from"]
 
 
@@ -59,7 +57,7 @@ def stop_from(described: Fields) -> StopRecord | None:
 
 def require_surface(mesh: TriangleMesh, progress: Progress | None = None) -> None:
     """Raise unless a mesh of unknown origin is one on which steps can be taken."""
-    with watched_part(progress, 0.0, 1.0, CANCELLED):
+    with watched_part(progress):
         build_connectivity(mesh.faces.astype(np.int32), mesh.n_vertices)
     if mesh.n_faces and not mesh.plan_areas.min() > 0:
         raise PyramidError("a face that is flipped or flat in plan; the file is damaged.")

@@ -19,7 +19,6 @@ from wavelet_core.progress import part_of, report, watched_part
 from wavelet_gis.crs.frame import LocalFrame
 from wavelet_gis.io.pyramid.array_tables import StoredArrays
 from wavelet_gis.io.pyramid.described import (
-    CANCELLED,
     locked_from,
     parameters_from,
     require_surface,
@@ -131,7 +130,7 @@ def pyramid_from_lists(
     )
     n_vertices = pyramid.n_vertices(pyramid.n_levels)
     if not is_surface:
-        with watched_part(progress, 1.0, 1.0, CANCELLED):  # refuses what is no manifold
+        with watched_part(progress, 1.0):  # refuses what is no manifold
             build_connectivity(pyramid.faces.astype(np.int32), n_vertices)
     if "has_integrals" in described:
         integrals = arrays.get("integrals", "<f8", 1)
@@ -235,13 +234,8 @@ def _placed_steps(
         for level in range(n_levels)
     ]
     mask = _mask(locked, len(horizontal))
-    collapses = []
-    n_taken = 0
     with np.errstate(all="ignore"):
-        for collapse in steps_at_places(horizontal, faces, mask, tolerance, moves[::-1]):
-            collapses.append(collapse)
-            n_taken += len(collapse.odd)
-            report(progress, min(n_taken / len(horizontal), 1.0))
+        collapses = list(steps_at_places(horizontal, faces, mask, tolerance, moves[::-1], progress))
     return [
         Step(*collapse._replace(details=arrays.get(_name_of(level, "details"), "<f8", 2)))
         for level, collapse in enumerate(reversed(collapses))

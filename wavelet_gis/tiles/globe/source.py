@@ -105,6 +105,11 @@ class SourceSurface:
         heights = -surface_errors(self.whole, places, cover_of(self.whole, plan))
         return np.where(np.isnan(heights), self.fill, heights)
 
+    @property
+    def n_points(self) -> int:
+        """Number of vertices."""
+        return len(self.points.points)
+
     def points_in(self, tile: Tile) -> FloatArray:
         """Return the vertices of a tile of any zoom."""
         return self.points.within(tile, self.zoom)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import OptionError, Progress
-from wavelet_core.progress import report
+from wavelet_core.progress import part_of, report
 from wavelet_gis.crs.lookup import coordinate_system
 from wavelet_gis.crs.projection import projected
 from wavelet_gis.errors import CrsError, InputFileError, TerrainWarning
@@ -59,6 +59,12 @@ _SHARE_OF_CHAINS = 0.4
 #: twice as much nothing changes on the same crops (0.2 %); with four times as much 26 % more bytes.
 _SHARE_HANDED_ON = 1 / 16
 
+
+#: Of the time: the surface that tiles are made of.
+_SHARE_OF_SOURCE = 0.03
+
+#: Of the time for a tile: the tries until its error is kept.
+_PART_OF_TRIES = 0.8
 
 #: More tiles than this are refused rather than tried: as many as 16 billion points have.
 _MOST_TILES = 1_000_000
@@ -266,7 +272,7 @@ class _Writer:
         self._has_normals = normals
         self._progress = progress
         self._source = source_surface(globe, plan.zoom, plan.fill_height)
-        report(progress, 0.03)
+        report(progress, _SHARE_OF_SOURCE)
 
     def run(self, name: str) -> Tileset:
         """Write all tiles and the file that lists them."""
@@ -286,20 +292,28 @@ class _Writer:
         edges = tile_edges(
             source, ranges[-1], plan.height_step, _SHARE_OF_CHAINS * plan.max_error, plan.n_parts()
         )
-        n_done = 0
         figures: list[ZoomFigures] = []
         offs: list[_Off] = []
         meshes: dict[Tile, TileMesh] = {}
-        for tiles in ranges[::-1]:
+        for zooms_done, tiles in enumerate(ranges[::-1]):
+            of_zoom = part_of(
+                part_of(self._progress, _SHARE_OF_SOURCE, 1.0),
+                zooms_done / len(ranges),
+                (zooms_done + 1) / len(ranges),
+            )
+            n_done, n_all = 0, source.n_points + len(tiles)
             made: dict[Tile, TileMesh] = {}
             drawn: dict[Tile, OnTile] = {}
             worst = _Off()
             for tile in tiles.tiles():
                 children = [meshes.pop(child) for child in tile.children() if child in meshes]
-                made[tile], drawn[tile], off = _best(source, edges, plan, tile, children)
+                points = source.points_in(tile)
+                of_tile = part_of(of_zoom, n_done / n_all, (n_done + len(points) + 1) / n_all)
+                made[tile], drawn[tile], off = _best(
+                    source, edges, plan, tile, children, points, of_tile
+                )
                 worst = worst.with_those(off)
-                n_done += 1
-                report(self._progress, 0.05 + 0.95 * n_done / n_tiles)
+                n_done += len(points) + 1
             meshes = made
             n_vertices = sum(len(on.u) for on in drawn.values())
             n_bytes = self._write(drawn)
@@ -391,11 +405,16 @@ class _Writer:
 
 
 def _best(
-    source: SourceSurface, edges: TileEdges, plan: TilesetPlan, tile: Tile, children: list[TileMesh]
+    source: SourceSurface,
+    edges: TileEdges,
+    plan: TilesetPlan,
+    tile: Tile,
+    children: list[TileMesh],
+    points: NDArray[np.float64],
+    progress: Progress | None,
 ) -> tuple[TileMesh, OnTile, _Off]:
     """Return what a tile hands on, what is drawn of it, and how far that is off at all points."""
     border = edges.border(tile)
-    points = source.points_in(tile)
     if children:
         mesh = joined(children, border)
     else:
@@ -409,8 +428,10 @@ def _best(
     promised = plan.error_at(tile.zoom)
     kept: NDArray[np.bool_] = np.zeros(len(mesh.x), dtype=bool)
     best: tuple[tuple[int, float], OnTile] | None = None
-    for share in _SHARES:
+    for n_tried, share in enumerate(_SHARES):
+        report(progress, _part_after(n_tried))
         smaller = simplified(mesh, border, tile, plan.height_step, share * promised, kept)
+        report(progress, _part_after(n_tried + 0.7))
         drawn = on_tile(smaller, tile, plan.zoom)
         off, errors = _off(drawn, tile, plan, points)
         if best is None or off < best[0]:
@@ -419,12 +440,19 @@ def _best(
             break
         mesh, kept = with_points(mesh, points[~(errors <= promised)], plan.height_step, kept)
     assert best is not None
+    report(progress, _PART_OF_TRIES)
     stays = np.zeros(len(mesh.x), dtype=bool)
     handed_on = simplified(mesh, border, tile, plan.height_step, _SHARE_HANDED_ON * promised, stays)
     (n_uncovered, worst), drawn = best
     n_others, of_others = _off(drawn, tile, plan, source.others_in(tile))[0]
+    report(progress, 1.0)
     off_at_all = _Off(worst, max(worst, of_others), n_uncovered + n_others)
     return handed_on, drawn, off_at_all
+
+
+def _part_after(n_tried: float) -> float:
+    """Return how much of a tile is done after so many tries, of which most tiles need few."""
+    return float(_PART_OF_TRIES * (1.0 - 0.5**n_tried))
 
 
 def _off(
