@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from .errors import MeshError
+from .errors import MeshError, OptionError
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -153,6 +153,26 @@ def as_attributes(
         raise MeshError(f"attribute {sorted(clash)[0]!r} has a coordinate's name; rename it.")
     _require_finite(array, "vertex", "attribute")
     return array, names
+
+
+def as_locked(locked: ArrayLike | None, n_vertices: int) -> NDArray[np.bool_]:
+    """Return a mask of locked vertices, ``(n_vertices,)``, of our own; without one, of none.
+
+    Raises
+    ------
+    OptionError
+        Another shape, or no bools.
+    """
+    mask = np.zeros(n_vertices, dtype=bool) if locked is None else np.array(locked)
+    if mask.shape != (n_vertices,) or mask.dtype != bool:
+        raise OptionError(
+            "{0} has shape {shape} and dtype {dtype}; give one bool for each of {n} vertices.",
+            "locked",
+            shape=mask.shape,
+            dtype=mask.dtype,
+            n=n_vertices,
+        )
+    return mask
 
 
 def _require_finite(array: FloatArray, row_name: str, value_name: str) -> None:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 
+import numpy as np
+
 from .errors import Cancelled
 
 #: What an error says of work that was stopped.
@@ -35,7 +37,10 @@ def report(
     Cancelled
         ``progress`` returned False.
     """
-    if progress is not None and progress(fraction) is False:
+    if progress is None:
+        return
+    answer = progress(fraction)
+    if isinstance(answer, bool | np.bool_) and not answer:  # None, as of most functions, goes on
         raise Cancelled(message)
 
 

@@ -224,7 +224,7 @@ class ClusterDetails(PyramidAlgorithm):
         geo = self.geo_pyramid(request)
         is_learned = _teacher(request) != TEACHERS[0]
         labelled = self._classes(request, geo) if is_learned else self._clusters(request, geo)
-        summary = request.computed(lambda work: labelled.summary(), 0.7, 0.8)
+        summary = request.computed(lambda work: labelled.summary(), 0.7, 0.72)
         word = tr("class") if is_learned else tr("cluster")
         for row in summary["clusters"]:
             request.say(f"{word} {row['label']}: {row['n_vertices']} ({100 * row['share']:.1f} %)")
@@ -312,13 +312,13 @@ def _written(request: Request, labelled: Labelled) -> Values:
     path = request.output_layer("RASTER")
     if path:
         cell_size = request.size("CELL_SIZE")
-        bands = request.computed(lambda work: labelled.raster(cell_size), 0.8, 0.9)
-        report = request.progress(0.9, 0.95)
+        bands = request.computed(lambda work: labelled.raster(cell_size), 0.72, 0.78)
+        report = request.progress(0.78, 0.82)
         write_bands(path, bands, crs_of(labelled.geo), request.feedback, report)
         request.finish("RASTER", path, partial(styles.style_labels, name=labelled.name))
         results["RASTER"] = path
     if request.wants("OUTPUT"):
-        layer = request.computed(lambda work: labelled.layer(), 0.8, 0.85)
+        layer = request.computed(lambda work: labelled.layer(), 0.82, 0.85)
         results["OUTPUT"] = tin_output.write_layer(request, "OUTPUT", labelled.geo, layer)
     return results
 

@@ -56,6 +56,7 @@ class Request:
         self.feedback = feedback or QgsProcessingFeedback()
         #: Sizes and errors of what was made, for the metadata of every layer.
         self.figures: dict[str, Any] = {}
+        self._shown = 0.0  # where the bar stands
 
     # What was asked for.
 
@@ -199,8 +200,20 @@ class Request:
         require_running(self.feedback)
 
     def progress(self, start: float = 0.0, stop: float = 1.0) -> Callable[[float], bool]:
-        """Return a progress function that drives a part of QGIS's bar."""
-        return progress(self.feedback, start, stop)
+        """Return a progress function that drives a part of QGIS's bar.
+
+        The bar never runs back: which parts there are depends on the outputs that are wanted, and
+        what a file is read back by reports after all that was written to it.
+        """
+        start = max(start, self._shown)
+        stop = max(start, stop)
+        drive = progress(self.feedback)
+
+        def report(fraction: float) -> bool:
+            self._shown = max(self._shown, start + (stop - start) * fraction)
+            return drive(self._shown)
+
+        return report
 
     def computed(
         self, function: Callable[[Work], Result], start: float = 0.0, stop: float = 1.0
@@ -214,7 +227,9 @@ class Request:
         start, stop : float
             The part of the bar that it drives.
         """
-        return computed(self.feedback, function, start, stop)
+        start = max(start, self._shown)
+        self._shown = max(start, stop)
+        return computed(self.feedback, function, start, self._shown)
 
     def _is_open(self, name: str) -> bool:
         definition = self.algorithm.parameterDefinition(name)

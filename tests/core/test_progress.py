@@ -3,6 +3,7 @@
 import ast
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from wavelet_core import Cancelled
@@ -12,9 +13,13 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def test_false_stops_and_nothing_else_does():
+    """The False of a comparison of numpy's numbers went on."""
     for answer in (None, True, 0, ""):
         report(lambda fraction, answer=answer: answer, 0.5)
     report(None, 0.5)
+    for answer in (False, np.False_):
+        with pytest.raises(Cancelled):
+            report(lambda fraction, answer=answer: answer, 0.5)
     with pytest.raises(Cancelled, match="nothing was written"):
         report(lambda fraction: False, 0.5, "nothing was written")
 

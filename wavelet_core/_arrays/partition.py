@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .._kernels.collapse import COLLINEAR_TOLERANCE, FLATNESS_TOLERANCE
 from .._kernels.connectivity import BOUNDARY, INTERIOR
+from .._kernels.outline import COLLINEAR_TOLERANCE, FLATNESS_TOLERANCE
 from .._kernels.partition import EVEN, ODD, ROUNDING
 from ..progress import report_share
 from ._csr import expanded

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._kernels.surface_cost import FLATNESS_TOLERANCE
+from .._kernels.outline import FLATNESS_TOLERANCE
 from ._csr import blocks, expanded
 from .half_edges import rings_of
 

@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .._kernels.outline import CUTS, STAYS
+from .._kernels.outline import CUTS, FLATNESS_TOLERANCE, STAYS
 from .._kernels.surface_cost import (
-    FLATNESS_TOLERANCE,
     LEAST_SQUARES,
     MOMENT_STEP,
     NONE,

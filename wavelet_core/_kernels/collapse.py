@@ -2,11 +2,7 @@
 
 from ._jit import njit
 from .connectivity import BOUNDARY, INTERIOR
-
-# new faces thinner than this part of their longest edge squared are refused
-FLATNESS_TOLERANCE = 1e-9
-# an outline vertex is collinear with its outline neighbours below this, relative likewise
-COLLINEAR_TOLERANCE = 1e-9
+from .outline import COLLINEAR_TOLERANCE, FLATNESS_TOLERANCE
 
 
 # Is there an edge between two even vertices: in the level's mesh, or made earlier in this pass?

@@ -16,6 +16,9 @@ FILLS = 3
 # an outline vertex is collinear with its outline neighbours below this part of their distance: some
 # 1e3 times what rounding leaves of coordinates of 1e7 times a cell (a UTM northing)
 COLLINEAR_TOLERANCE = 1e-9
+# new faces thinner than this part of their longest edge squared are refused; it is above what
+# rounding makes of a flat face in coordinates of 1e7 times its size
+FLATNESS_TOLERANCE = 1e-9
 
 
 class Outline(NamedTuple):

@@ -24,11 +24,8 @@ import numpy as np
 from ._jit import inlined, kernel
 from .half_edges import MAX_RING, meets_link_condition, walk_ring
 from .lattice import on_lattice
-from .outline import CUTS, STAYS, nearest_on_edge, outline_rule
+from .outline import CUTS, FLATNESS_TOLERANCE, STAYS, nearest_on_edge, outline_rule
 
-# new faces thinner than this part of their longest edge squared are refused; it is above what
-# rounding makes of a flat face in coordinates of 1e7 times its size
-FLATNESS_TOLERANCE = 1e-9
 LEAST_SQUARES = 0
 LARGEST = 1
 # With the largest error as the norm, the mean square ranks targets of the same largest error

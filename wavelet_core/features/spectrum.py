@@ -144,7 +144,8 @@ def band_energies(
         E_l = R_{L-1} \dots R_l \, e_l
 
     where R copies even vertices and predicts odd ones. So a band's energy is only moved about:
-    the sum of a column over the input vertices is the sum of ζ w² over the band's details. The
+    the sum of a column over the input vertices is the sum of ζ w² over the band's details; over the
+    vertices of a pyramid that is a part of another, it is that sum weighted by their integrals. The
     cost is O(n L). Filters with negative weights (least squares, plane) take part with
     the absolute values of their weights, scaled to sum one, or energies could be negative.
 
@@ -157,11 +158,16 @@ def band_energies(
     ((600, 3), True)
     """
     columns = _columns_of(pyramid, channel)
-    integrals = _integrals(pyramid, np.ones(pyramid.n_vertices(pyramid.n_levels)), _sharing)
+    # Where filters have negative weights, so may the vertices of a part; energies have none.
+    finest = np.abs(pyramid.integrals(pyramid.n_levels))
+    integrals = _integrals(pyramid, finest, _sharing)
     energies = np.empty((pyramid.n_vertices(0), 0))
     for level, (step, even, sharing) in enumerate(_steps_upwards(pyramid)):
         squared = (step.details[:, columns] ** 2).sum(axis=1)
-        gathered = (sharing.T @ (integrals[level + 1][step.odd] * squared)) / integrals[level]
+        gathered = sharing.T @ (integrals[level + 1][step.odd] * squared)
+        gathered = np.divide(
+            gathered, integrals[level], out=np.zeros(len(even)), where=integrals[level] > 0
+        )
         energies = _spread(np.column_stack([energies, gathered]), step, even, sharing)
         _report(progress, len(energies) / len(integrals[-1]))
     return energies

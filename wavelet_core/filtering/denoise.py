@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from .._validate import FloatArray
+from .._validate import FloatArray, as_locked
 from ..errors import OptionError
 from ..lifting.analyse import EXPECTED_KEPT, analyse
 from ..lifting.linear_map import Transform
@@ -141,15 +142,17 @@ def denoise(
         raise OptionError("{0} is {given}; give 1 or more.", "levels", given=levels)
     names = ("z", *mesh.attribute_names)
     chosen = {name: channel_index(names, name) for name in channels}
+    is_locked = as_locked(locked, mesh.n_vertices)
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
     meter = Meter(progress, "denoising was cancelled; nothing was kept.")
     n_steps = OUTLIER_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
     meter.begin(0.0, BEFORE_PYRAMIDS, n_steps * len(chosen))
     noises = {}
     for name, c in chosen.items():
-        noises[name], columns[:, c] = noise_of(
+        given = columns[:, c].copy()
+        noise, columns[:, c] = noise_of(
             mesh,
-            columns[:, c],
+            given,
             sigma,
             noise_range=noise_range,
             local_noise=local_noise,
@@ -157,12 +160,18 @@ def denoise(
             seed=seed,
             tick=meter.tick,
         )
+        if noise.outliers is not None:
+            columns[is_locked, c] = given[is_locked]
+            noise = replace(noise, outliers=noise.outliers[~is_locked[noise.outliers]])
+        noises[name] = noise
         meter.tick()
     if found is not None:
         found.update(noises)
     noisy = [name for name, c in chosen.items() if _is_above_rounding(noises[name], columns[:, c])]
     if noisy and len(mesh.faces):
-        decompositions = _Decompositions(mesh, n_pyramids, levels, prediction, locked, seed, meter)
+        decompositions = _Decompositions(
+            mesh, n_pyramids, levels, prediction, is_locked, seed, meter
+        )
         weighted = [
             decompositions.weighted_sum(columns[:, chosen[name]], noises[name]) for name in noisy
         ]
@@ -192,7 +201,7 @@ class _Decompositions:
         n_pyramids: int,
         levels: int,
         prediction: str,
-        locked: ArrayLike | None,
+        locked: NDArray[np.bool_],
         seed: int,
         meter: Meter,
     ) -> None:
@@ -248,9 +257,7 @@ class _Decompositions:
 
     def _fill_terraces(self, bank: UndecimatedBank, one: WeightedSum) -> None:
         """Take out of a result what rounding left, but where values are no rounded ones."""
-        is_fixed = np.zeros(self._mesh.n_vertices, dtype=bool)
-        if self._locked is not None:
-            is_fixed |= np.asarray(self._locked, dtype=bool)
+        is_fixed = self._locked.copy()
         if one.noise.outliers is not None:
             is_fixed[one.noise.outliers] = True
         sigma = one.noise.sigma * (1.0 if one.noise.relative is None else one.noise.relative)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .._kernels._jit import announce_engine, fitting_engine
-from .._validate import FloatArray, frozen
+from .._validate import FloatArray, as_locked, frozen
 from ..errors import MeshError, OptionError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
@@ -192,7 +192,7 @@ def analyse(
         return _Analysis(
             mesh,
             options,
-            _locked_mask(locked, mesh),
+            as_locked(locked, mesh.n_vertices),
             progress,
             _begun_integrals(integrals, mesh),
             _finer_points(points, mesh, options),
@@ -444,21 +444,6 @@ class _Analysis:
             fraction = min(gone / max(n_input - expected, 1.0), 0.99)
         self._reported = fraction = max(fraction, self._reported)
         report(self._progress, fraction, "the analysis was cancelled; nothing was kept.")
-
-
-def _locked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.bool_]:
-    if locked is None:
-        return np.zeros(mesh.n_vertices, dtype=bool)
-    mask = np.array(locked)
-    if mask.shape != (mesh.n_vertices,) or mask.dtype != bool:
-        raise OptionError(
-            "{0} has shape {shape} and dtype {dtype}; give one bool for each of {n} vertices.",
-            "locked",
-            shape=mask.shape,
-            dtype=mask.dtype,
-            n=mesh.n_vertices,
-        )
-    return mask
 
 
 def _begun_integrals(integrals: ArrayLike | None, mesh: TriangleMesh) -> FloatArray | None:

@@ -180,7 +180,14 @@ class Pyramid:
             yield self._assemble(coefficients, ids[level], faces.pop())
 
     def __eq__(self, other: object) -> bool:
-        return are_equal(self, other) if isinstance(other, Pyramid) else NotImplemented
+        if not isinstance(other, Pyramid):
+            return NotImplemented
+        ours, theirs = self._origin, other._origin
+        return (
+            are_equal(self, other)
+            and np.array_equal(ours.ids, theirs.ids)
+            and np.array_equal(ours.integrals, theirs.integrals)
+        )
 
     __hash__ = None  # type: ignore[assignment]  # as for meshes
 
@@ -428,6 +435,14 @@ class Pyramid:
         if self.n_levels == 0:
             return "this pyramid has none, since nothing was removed"
         return f"they are at 0 to {self.n_levels - 1}"
+
+    @property
+    def _origin(self) -> PyramidPart:
+        """Ids and integrals of the finest level; those of an input where it is no part."""
+        if self.part is not None:
+            return self.part
+        n_vertices = self.n_vertices(self.n_levels)
+        return PyramidPart(np.arange(n_vertices, dtype=np.int32), np.ones(n_vertices))
 
     def _in_input(self, ids: NDArray[np.int32]) -> IntArray:
         """Return ids of the input from those of the finest level."""

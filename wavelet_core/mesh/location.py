@@ -108,6 +108,9 @@ def _border_heights(mesh: TriangleMesh, plan: FloatArray, within: float) -> Floa
         heights[far <= within] = vertices[lone[nearest[far <= within]], 2]
     edges, n_faces = edges_of(mesh.faces)
     tails, heads = (vertices[edges[n_faces == 1, k]] for k in (0, 1))
+    # An upright edge, of a vertical face, has no length in plan: the edges that it joins end there.
+    has_length = (tails[:, :2] != heads[:, :2]).any(axis=1)
+    tails, heads = tails[has_length], heads[has_length]
     # Each edge of the border is a strip of two triangles, and these are laid over the places.
     ahead = (heads - tails)[:, :2]
     ahead *= within / np.hypot(*ahead.T)[:, None]

@@ -218,7 +218,8 @@ class TriangleMesh:
         face_array = as_faces(faces, len(vertex_array))
         clockwise = _doubled_plan_areas(vertex_array, face_array) < 0
         face_array[clockwise] = face_array[clockwise, ::-1]
-        return cls(vertex_array, face_array, attributes, attribute_names)
+        attribute_array, names = as_attributes(attributes, attribute_names, len(vertex_array))
+        return cls._trusted(vertex_array, face_array, attribute_array, names)
 
     def __eq__(self, other: object) -> bool:
         return are_equal(self, other) if isinstance(other, TriangleMesh) else NotImplemented

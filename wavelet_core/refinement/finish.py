@@ -10,13 +10,16 @@ from numpy.typing import ArrayLike
 from .._validate import IntArray
 from ..accuracy.fitted_heights import fitted
 from ..accuracy.selective import mesh_within
-from ..errors import OptionError
+from ..errors import OptionError, PyramidError
 from ..lifting.pyramid import Pyramid
 from ..mesh.connectivity import BOUNDARY, build_connectivity
 from ..mesh.location import Cover, cover_of
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Progress, part_of
 from .refine import Round, refine
+
+#: Parameters of an analysis that say which error counts, and what a level keeps.
+NEEDED = ("norm", "max_error", "max_rms", "update", "signal", "partition")
 
 
 class FinishedTin(NamedTuple):
@@ -68,6 +71,8 @@ def finished(
     ------
     OptionError
         Rounds where heights shall stay those of the level, or where signal "xyz" has moved it.
+    PyramidError
+        The pyramid does not say how it was analysed, as one that comes from elsewhere.
     Cancelled
         ``progress`` returned False.
 
@@ -77,6 +82,12 @@ def finished(
     heights, and those of the input where an update has moved them, might break the tolerance.
     """
     parameters = pyramid.parameters
+    missing = [name for name in NEEDED if name not in parameters]
+    if missing:
+        raise PyramidError(
+            f"the pyramid's parameters lack {', '.join(missing)}, so it does not say what its "
+            "coarsest level keeps; give them to Pyramid.from_parts, or analyse the input anew."
+        )
     mesh, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
     is_rms, max_error = parameters["norm"] == "rms", parameters["max_error"]
     is_lifted = is_rms or parameters["update"] != "none"

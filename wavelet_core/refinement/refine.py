@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .._kernels._jit import fitting_engine
 from .._kernels.refine_tin import Objective
-from .._validate import FloatArray, IntArray
+from .._validate import FloatArray, IntArray, as_locked
 from ..accuracy.fitted_heights import fitted
 from ..errors import MeshError, OptionError
 from ..lifting.options import as_whole, checked_weights
@@ -171,7 +171,7 @@ def refine(
             of_mesh=mesh.attribute_names,
             of_original=original.attribute_names,
         )
-    fixed = _checked_mask(locked, mesh)
+    fixed = as_locked(locked, mesh.n_vertices)
     areas = mesh.plan_areas
     if len(areas) and areas.min() <= 0:
         face = int(np.argmin(areas))
@@ -179,7 +179,7 @@ def refine(
     cover = cover_of(mesh, original.vertices[:, :2]) if cover is None else cover
     task = _Task(
         mesh, original, ids, fixed, cover, norm == "max", norm == "rms" and not keep_points,
-        limits, max_rms, attribute_weights,
+        limits, max_rms, attribute_weights, float(areas.sum()),
     )  # fmt: skip
     with fitting_engine(original.n_vertices):
         work = _Work(task, progress)
@@ -203,6 +203,7 @@ class _Task(NamedTuple):
     limits: FloatArray | None
     max_rms: float | None
     attribute_weights: Sequence[float] | None
+    plan_area: float
 
 
 class _Work:
@@ -225,7 +226,7 @@ class _Work:
         self._n_lone = len(ids) - len(np.unique(mesh.faces))
         face_of = np.full(original.n_vertices, -1, dtype=np.int64)
         face_of[cover.point] = cover.face
-        step = np.sqrt(mesh.plan_areas.sum() / self._n_points)
+        step = np.sqrt(task.plan_area / self._n_points)
         self._state = TinState(
             original.vertices[:, :2] - original.vertices[:, :2].min(axis=0),
             self._measured * self._weights,
@@ -323,7 +324,7 @@ class _Work:
             return np.inf
         squared = float(self._state.face_errors().squared_z.sum())
         most = self._task.max_rms * self._task.max_rms  # inf where ** would overflow
-        return most * self._n_points - squared
+        return most * (self._n_points + self._n_lone) - squared
 
     def _improve(self, number: int, most: int, n_replaced: int = 0, n_removed: int = 0) -> None:
         """Turn edges, move vertices, turn edges; note what the TIN is like."""
@@ -426,18 +427,6 @@ def _checked_ids(vertex_ids: ArrayLike, mesh: TriangleMesh, original: TriangleMe
             vertex=int(np.argmax(apart)),
         )
     return ids
-
-
-def _checked_mask(locked: ArrayLike | None, mesh: TriangleMesh) -> NDArray[np.bool_]:
-    mask = np.zeros(mesh.n_vertices, dtype=bool) if locked is None else np.asarray(locked)
-    if mask.shape != (mesh.n_vertices,) or mask.dtype != bool:
-        raise OptionError(
-            "{0} has shape {shape}; give {due} of bool.",
-            "locked",
-            shape=mask.shape,
-            due=(mesh.n_vertices,),
-        )
-    return mask
 
 
 def _checked_limits(max_error: ArrayLike | None, original: TriangleMesh) -> FloatArray | None:

@@ -93,6 +93,31 @@ def test_outliers_are_found_counted_and_replaced():
     assert rmse(kept, HILLS) > 5 * rmse(clean, HILLS)
 
 
+def test_locked_outliers_stay():
+    """They were replaced, and the others said to be as many."""
+    spiked = HILLS + np.random.default_rng(2).normal(0, 0.1, HILLS.shape)
+    spiked[20, 30] += 15.0
+    spiked[70, 60] += 15.0
+    is_locked = np.zeros(HILLS.shape, dtype=bool)
+    is_locked[20, 30] = True
+    found = {}
+    clean = denoise(
+        mesh_of(spiked), n_pyramids=1, locked=is_locked.ravel(), outliers=True, found=found
+    )
+    heights = clean.vertices[:, 2].reshape(HILLS.shape)
+    assert heights[20, 30] == spiked[20, 30]
+    assert heights[70, 60] < spiked[70, 60] - 14.0
+    assert found["z"].outliers.tolist() == [70 * N + 60]
+
+
+def test_locked_is_checked_also_where_there_is_no_noise():
+    """A mask of another length went unnoticed on a plane."""
+    flat = mesh_of(np.zeros((N, N)))
+    for locked in (np.zeros(3, dtype=bool), np.arange(N * N)):
+        with pytest.raises(OptionError, match="locked has shape"):
+            denoise(flat, locked=locked)
+
+
 def test_banks_crests_and_summits_are_no_outliers():
     cone = 30 - np.hypot(X - 50.3, Y - 49.6)
     roof = -np.abs(X - 40.0) * 2

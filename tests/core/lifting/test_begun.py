@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from wavelet_core import OptionError, TriangleMesh, analyse, band_components, synthetic
+from wavelet_core import (
+    OptionError,
+    TriangleMesh,
+    analyse,
+    band_components,
+    band_energies,
+    synthetic,
+)
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.lifting.linear_map import Transform
 from wavelet_core.metrics import level_errors, surface_errors
@@ -132,3 +139,20 @@ def test_errors_of_the_levels_are_those_at_the_points():
         errors = surface_errors(pyramid[level], fine.vertices)
         assert row.rmse_surface == pytest.approx(np.sqrt(np.mean(errors**2)))
         assert row.max_error_surface == pytest.approx(np.abs(errors).max())
+
+
+def test_energies_are_weighted_by_these_integrals():
+    """Those of the finest level counted as ones."""
+    pyramid = analyse(MESH, levels=4, integrals=WEIGHTS)
+    energies = band_energies(pyramid)
+    for level, step in enumerate(pyramid.steps):
+        here = pyramid.integrals(level + 1)[step.odd]
+        assert WEIGHTS @ energies[:, level] == pytest.approx(here @ step.details[:, 0] ** 2)
+
+
+def test_pyramids_with_other_integrals_are_not_equal():
+    """They were, though their finer levels have other vertices in the input."""
+    one, same = (analyse(MESH, levels=3, update="none", integrals=WEIGHTS) for _ in range(2))
+    assert one == same
+    assert one != analyse(MESH, levels=3, update="none", integrals=2 * WEIGHTS)
+    assert one != analyse(MESH, levels=3, update="none")

@@ -71,3 +71,13 @@ def test_a_face_beyond_64_bits_of_cells_covers_what_lies_in_it(name):
     with engine(name):
         errors = surface_errors(mesh, np.array([[1.0, 1.0, 8.0], [2.0, 3.0, 9.0]]))
     assert errors.tolist() == [1.0, 2.0]
+
+
+def test_the_border_of_a_vertical_face_has_a_height():
+    """Its edge without length in plan made all places near the border NaN."""
+    vertices = [[0, 0, 0], [4, 0, 4], [0, 4, 0], [4, 4, 4], [4, 4, 9]]
+    mesh = TriangleMesh(vertices, [[0, 1, 2], [1, 3, 2], [1, 4, 3]])
+    beside = np.array([[4.0 + 1e-7, 2.0, 0.0], [1.0, -1e-7, 3.0], [4 + 1e-7, 4 + 1e-7, 0.0]])
+    errors = errors_with_border(mesh, beside, 1e-6)
+    assert errors[1] == 2.0
+    assert np.isfinite(errors).all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from wavelet_core import OptionError, analyse, finished, synthetic
+from wavelet_core import OptionError, PyramidError, analyse, finished, synthetic
 from wavelet_core.mesh.connectivity import BOUNDARY, build_connectivity
 from wavelet_core.metrics import surface_errors
 
@@ -80,3 +80,11 @@ def test_an_outline_that_moved_within_a_tolerance_stays_where_points_outside_nee
 def outline_ids(mesh, ids):
     connectivity = build_connectivity(mesh.faces.astype(np.int32), mesh.n_vertices)
     return set(ids[connectivity.kind == BOUNDARY].tolist())
+
+
+def test_a_pyramid_without_parameters_is_refused_in_words(rough):
+    """It ended in a KeyError: 'norm'."""
+    whole = analyse(rough, target_vertices=70)
+    bare = whole.with_parts(parameters={"update": "none", "signal": "z"})
+    with pytest.raises(PyramidError, match="lack norm, max_error, max_rms, partition, so"):
+        finished(bare, rough)

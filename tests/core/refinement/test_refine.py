@@ -351,6 +351,17 @@ def test_a_mean_error_beyond_all_measure_is_no_overflow():
     assert refined.mesh.n_vertices == 4
 
 
+def test_vertices_without_a_face_are_among_those_of_a_mean_tolerance():
+    """The analysis counted them, the refinement did not, and left room that the tolerance had."""
+    mesh = MESHES["hills"]()
+    aside = np.column_stack([np.arange(400.0), np.full(400, -1e3), np.zeros(400)])
+    both = TriangleMesh(np.vstack([mesh.vertices, aside]), mesh.faces)
+    pyramid = analyse(both, max_rms=1.5)
+    refined = refine(pyramid.mesh(0), both, pyramid.vertex_ids(0), max_rms=1.5)
+    assert refined.mesh.n_vertices < pyramid.n_vertices(0)
+    assert refined.rounds[-1].rmse <= 1.5
+
+
 @pytest.mark.parametrize("name", [ORACLE, "arrays"])
 def test_a_tolerance_of_nothing_somewhere_is_no_overflow(name):
     mesh = synthetic.hills(12, 12)

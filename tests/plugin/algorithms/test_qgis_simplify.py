@@ -1,6 +1,6 @@
 """A DEM to a TIN of fewer vertices, in a real QGIS."""
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -31,6 +31,15 @@ class TestSimplify:
         assert np.abs(error).max() == pytest.approx(made["MAX_ERROR_SURFACE"], rel=1e-3)
         back = run("reconstruct", {"INPUT": made["OUTPUT"], "DEM": str(tmp_path / "b.tif")})
         assert back["EXACT"] == "yes"
+
+    def test_the_bar_never_runs_back_whichever_outputs_are_wanted(self, run, dem, tmp_path):
+        """The TIN began behind where the pyramid had ended."""
+        outputs = {"TIN": "TEMPORARY_OUTPUT", "OUTPUT": str(tmp_path / "p.gpkg")}
+        log = Log()
+        run("simplifydem", {"INPUT": dem, "VERTICES": 300, **outputs}, log)
+        assert max(log.fractions) >= 90
+        steps = list(pairwise(log.fractions))
+        assert [step for step in steps if step[1] < step[0]] == []
 
     def test_fitted_heights_have_the_smaller_mean_square(self, run, dem):
         parameters = {"INPUT": dem, "VERTICES": 200, "TIN": "TEMPORARY_OUTPUT"}

@@ -1,6 +1,7 @@
 """What a pyramid is used for: filters, energy, clusters, classes, the report; in a real QGIS."""
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -120,6 +121,15 @@ class TestClusters:
         assert made["OUTPUT"].featureCount() == 8000
         summary = json.loads(Path(made["SUMMARY"]).read_text())
         assert [row["label"] for row in summary["clusters"]] == [0, 1]
+
+    def test_the_bar_never_runs_back_whichever_outputs_are_wanted(self, run, pyramid, tmp_path):
+        """The points began where the raster had begun, behind where it had ended."""
+        log = Log()
+        outputs = {"RASTER": str(tmp_path / "c.tif"), "OUTPUT": "TEMPORARY_OUTPUT"}
+        run("clusterdetails", {"INPUT": pyramid, "COUNT": 2, **outputs}, log)
+        assert max(log.fractions) > 90
+        steps = list(pairwise(log.fractions))
+        assert [step for step in steps if step[1] < step[0]] == []
 
     def test_classes_are_learned_from_training_areas(self, run, pyramid, tmp_path):
         pytest.importorskip("sklearn")
