@@ -166,6 +166,14 @@ class FilterLevels(PyramidAlgorithm):
         ):
             self.add(QgsProcessingParameterBoolean(name, description, False), text, advanced=True)
         self.add(
+            choice("STRIPES", tr("Stripes along"), ("none", "rows", "columns", "point_source_id")),
+            tr(
+                "Take out an offset for each row or column of a DEM, or for each flight line "
+                "(<i>point_source_id</i>) of a point cloud."
+            ),
+            advanced=True,
+        )
+        self.add(
             QgsProcessingParameterNumber(
                 "PYRAMIDS", tr("Number of pyramids averaged"), WHOLE_NUMBER, 8, minValue=0
             ),
@@ -282,6 +290,7 @@ class FilterLevels(PyramidAlgorithm):
         channels = (request.words("CHANNELS") or ["z"]) if denoise else None
         noise_range = _range(request)
         local_noise, outliers = request.flag("LOCAL_NOISE"), request.flag("OUTLIERS")
+        stripes = request.text("STRIPES")
 
         def compute(work: Work) -> Filtered:
             return filter_pyramid(
@@ -296,6 +305,7 @@ class FilterLevels(PyramidAlgorithm):
                 noise_range=noise_range,
                 local_noise=local_noise,
                 outliers=outliers,
+                stripes=None if stripes == "none" else stripes,
                 progress=work.progress,
             )
 

@@ -1340,7 +1340,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Stripes along</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Such as that of a laser scanner. Done too where nothing else is chosen below.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Take out an offset for each row or column of a DEM, or for each flight line (&lt;i&gt;point_source_id&lt;/i&gt;) of a point cloud.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

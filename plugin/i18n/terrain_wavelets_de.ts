@@ -1340,8 +1340,18 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Stripes along</source>
+    <translation>Streifen entlang</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
     <source>Such as that of a laser scanner. Done too where nothing else is chosen below.</source>
     <translation>Etwa das eines Laserscanners. Geschieht auch, wo unten nichts anderes gewählt ist.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/filter_levels.py"/>
+    <source>Take out an offset for each row or column of a DEM, or for each flight line (&lt;i&gt;point_source_id&lt;/i&gt;) of a point cloud.</source>
+    <translation>Einen Versatz je Zeile oder Spalte eines DGM entfernen, oder je Flugstreifen (&lt;i&gt;point_source_id&lt;/i&gt;) einer Punktwolke.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/filter_levels.py"/>

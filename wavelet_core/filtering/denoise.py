@@ -22,6 +22,7 @@ from .gains import channel_index
 from .noise.model import Noise, RangeOption, noise_of
 from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
 from .noise.rounding import FILL_ROUNDS, ROUNDS_OF_SHARE, without_terraces
+from .noise.stripes import NO_LINE, STEPS_OF_STRIPES, check_lines
 from .noise.white import check_sigma, noise_columns, noise_gains
 from .undecimated import UndecimatedBank
 
@@ -49,6 +50,7 @@ def denoise(
     noise_range: RangeOption = 0.0,
     local_noise: bool = False,
     outliers: bool = False,
+    lines: ArrayLike | None = None,
     found: dict[str, Noise] | None = None,
 ) -> TriangleMesh:
     r"""Return the mesh with the noise taken out of its elevations or attributes.
@@ -83,9 +85,13 @@ def denoise(
         measured there, and ``sigma`` is its median.
     outliers : bool
         Replace values that stand out of their ring before all else.
+    lines : array_like of int, shape (n_vertices,), optional
+        A label for each vertex, such as its row, its scan line or its flight line, and -1 for none:
+        values have an offset for each line, which is found and taken out before all else. Lines of
+        fewer than 8 vertices keep theirs.
     found : dict, optional
         Is given the :class:`~wavelet_core.filtering.noise.model.Noise` of each channel: what was
-        estimated, and the outliers.
+        estimated, the outliers, and the offsets of lines.
 
     Returns
     -------
@@ -94,7 +100,7 @@ def denoise(
     Raises
     ------
     OptionError
-        An unknown channel, a negative sigma or range, no pyramid.
+        An unknown channel, a negative sigma or range, no pyramid, labels that are none.
     Cancelled
         ``progress`` returned False.
 
@@ -143,9 +149,13 @@ def denoise(
     names = ("z", *mesh.attribute_names)
     chosen = {name: channel_index(names, name) for name in channels}
     is_locked = as_locked(locked, mesh.n_vertices)
+    line = None
+    if lines is not None:  # values that stay are on none
+        line = np.where(is_locked, NO_LINE, check_lines(lines, mesh.n_vertices))
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
     meter = Meter(progress, "denoising was cancelled; nothing was kept.")
     n_steps = OUTLIER_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
+    n_steps += 0 if line is None else STEPS_OF_STRIPES
     meter.begin(0.0, BEFORE_PYRAMIDS, n_steps * len(chosen))
     noises = {}
     for name, c in chosen.items():
@@ -157,6 +167,7 @@ def denoise(
             noise_range=noise_range,
             local_noise=local_noise,
             outliers=outliers,
+            lines=line,
             seed=seed,
             tick=meter.tick,
         )

@@ -28,6 +28,7 @@ from wavelet_core.progress import part_of
 from wavelet_gis.errors import TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, suffix_of
 from wavelet_gis.model.attributes.categories import category_gains
+from wavelet_gis.model.attributes.lines import line_labels
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.notes import warn
@@ -50,7 +51,7 @@ N_PYRAMIDS = 8
 #: are built at most to reach a size.
 _GROWTH, _MOST_LEVELS = 1.08, 80
 #: Options that describe the noise, beside its deviation.
-NOISE_OPTIONS = ("noise_range", "local_noise", "outliers")
+NOISE_OPTIONS = ("noise_range", "local_noise", "outliers", "stripes")
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +142,7 @@ def filter_pyramid(
     noise_range: RangeOption = 0.0,
     local_noise: bool = False,
     outliers: bool = False,
+    stripes: str | None = None,
     progress: Progress | None = None,
 ) -> Filtered:
     """Return a pyramid with noise taken out, then chosen scales damped, boosted or isolated.
@@ -169,6 +171,9 @@ def filter_pyramid(
         Whether the noise differs by place, and is measured there.
     outliers : bool
         Whether values that stand out of their ring are replaced before all else.
+    stripes : str, optional
+        Take out an offset for each of the ``"rows"`` or ``"columns"`` of a raster, or for each
+        value of a dimension of points, such as the flight lines of ``"point_source_id"``.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -193,6 +198,7 @@ def filter_pyramid(
         "noise_range": noise_range != 0.0,
         "local_noise": local_noise,
         "outliers": outliers,
+        "stripes": stripes is not None,
         "n_pyramids": n_pyramids is not None,
         "channels": channels is not None,
     }
@@ -213,6 +219,7 @@ def filter_pyramid(
             noise_range=noise_range,
             local_noise=local_noise,
             outliers=outliers,
+            stripes=stripes,
             finest=finest_before,
             progress=part_of(progress, 0.0, middle),
         )
@@ -243,6 +250,7 @@ def denoised(
     noise_range: RangeOption = 0.0,
     local_noise: bool = False,
     outliers: bool = False,
+    stripes: str | None = None,
     finest: TriangleMesh | None = None,
     progress: Progress | None = None,
 ) -> tuple[GeoPyramid, dict[str, float]]:
@@ -261,6 +269,8 @@ def denoised(
     noise_range, local_noise, outliers
         As for `wavelet_core.denoise`; the range in metres where the CRS names its unit, else in
         its own. Not with thresholds.
+    stripes : str, optional
+        See `wavelet_gis.model.attributes.lines.line_labels`. Not with thresholds.
     finest : TriangleMesh, optional
         The pyramid's finest mesh, where it has been synthesised already.
     progress : callable, optional
@@ -276,11 +286,15 @@ def denoised(
     Raises
     ------
     OptionError
-        An unknown channel or a negative number; nothing has been computed yet.
+        An unknown channel or a negative number, or lines that are not there; nothing has been
+        computed yet.
     """
-    _require_noise(
-        geo, channels, n_pyramids, has_kind=noise_range != 0.0 or local_noise or outliers
-    )
+    has_kind = noise_range != 0.0 or local_noise or outliers or stripes is not None
+    _require_noise(geo, channels, n_pyramids, has_kind=has_kind)
+    lines = None
+    if stripes is not None:
+        finest = geo.pyramid.synthesise() if finest is None else finest
+        lines = line_labels(geo.origin, finest, stripes)
     reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
     pyramid, sigmas, described = geo.pyramid, dict[str, float](), []
     for k, name in enumerate(channels):
@@ -302,6 +316,7 @@ def denoised(
                 noise_range=reach,
                 local_noise=local_noise,
                 outliers=outliers,
+                lines=lines,
                 found=found,
                 progress=part,
             )
@@ -341,8 +356,8 @@ def _require_noise(
             )
     if n_pyramids == 0 and has_kind:
         raise OptionError(
-            "thresholds assume white noise; leave out {0}, {1} and {2}, or average one or more "
-            "pyramids with {3}.",
+            "thresholds assume white noise; leave out {0}, {1}, {2} and {3}, or average one or "
+            "more pyramids with {4}.",
             *NOISE_OPTIONS,
             "n_pyramids",
         )
@@ -355,6 +370,7 @@ def _in_file(noise: Noise, unit: float, metre: float) -> Noise:
         sigma=noise.sigma / unit,
         rounding=noise.rounding._replace(step=noise.rounding.step / unit),
         reach=noise.reach / metre,
+        stripes=noise.stripes and noise.stripes.in_unit(unit),
     )
 
 

@@ -124,6 +124,8 @@ def test_a_cloud_comes_back_as_a_cloud(done, cloud_pyramid, las, tmp_path):
         (["--band", "2:1"], "smaller bound first"),
         (["--denoise", "-1"], "--denoise is -1"),
         (["--denoise", "1", "--channel", "w"], "no channel 'w'"),
+        (["--denoise", "--stripes", "flight"], "--stripes is 'flight', which the raster has not"),
+        (["--denoise", "--stripes", "rows", "--pyramids", "0"], "thresholds assume white noise"),
     ],
 )
 def test_what_does_not_fit_is_refused(refused, pyramid, tmp_path, options, words):
@@ -201,10 +203,63 @@ def test_outliers_that_pass_through_are_told(done, tmp_path):
 
 @pytest.mark.parametrize(
     ("flag", "value"),
-    [("--channel", "z"), ("--pyramids", "4"), ("--noise-range", "30"), ("--outliers", None)],
+    [
+        ("--channel", "z"),
+        ("--pyramids", "4"),
+        ("--noise-range", "30"),
+        ("--outliers", None),
+        ("--stripes", "rows"),
+    ],
 )
 def test_what_tells_of_noise_is_refused_without_denoising(pyramid, refused, tmp_path, flag, value):
     """``--channel`` and ``--pyramids`` were passed over in silence."""
     options = [flag] if value is None else [flag, value]
     said = refused("filter", pyramid, tmp_path / "x.tif", "--gain", "0=0", *options)
     assert f"{flag} is for --denoise; give --denoise too" in said
+
+
+@pytest.mark.parametrize("along", ["rows", "columns"])
+def test_stripes_of_a_raster_with_a_hole_are_taken_out_and_told(done, tmp_path, along):
+    rng = np.random.default_rng(5)
+    y, x = np.mgrid[:70, :80]
+    truth = 300 + 10 * np.sin(x / 15) * np.cos(y / 13) + 0.2 * x
+    offsets = rng.normal(0, 1.0, 70)[:, None] if along == "rows" else rng.normal(0, 1.0, 80)
+    striped = (truth + rng.normal(0, 0.2, truth.shape) + offsets).astype("f4")
+    striped[20:35, 30:50] = -9999
+    write_tif(tmp_path / "a.tif", striped, nodata=-9999)
+    pyramid, clean, plain = (tmp_path / name for name in ("p.gpkg", "clean.tif", "plain.tif"))
+    done("analyse", tmp_path / "a.tif", pyramid, "--quiet")
+    said = done("filter", pyramid, clean, "--denoise", "--stripes", along, "--pyramids", 2).out
+    taken = re.search(r"offsets of ([\d.]+) taken out of (\d+) lines", said)
+    assert float(taken[1]) == pytest.approx(offsets.std(), rel=0.35)
+    assert int(taken[2]) == offsets.size
+    done("filter", pyramid, plain, "--denoise", "--pyramids", 2)
+    has = striped != -9999
+    errors = [np.sqrt(np.mean((band_of(path) - truth)[has] ** 2)) for path in (clean, plain)]
+    assert errors[0] < 0.6 * errors[1]
+
+
+def test_flight_lines_that_do_not_match_are_put_together(done, refused, tmp_path):
+    rng = np.random.default_rng(6)
+    plan = rng.uniform(0, 100, (5_000, 2)).round(2)
+    flight = np.where(plan[:, 0] + rng.normal(0, 10, 5_000) > 50, 12, 7)
+    truth = 200 + 5 * np.sin(plan[:, 0] / 15) + 0.05 * plan[:, 1]
+    cloud = laspy.create(point_format=6, file_version="1.4")
+    cloud.header.scales = [0.01, 0.01, 0.001]
+    cloud.x, cloud.y = plan.T
+    cloud.z = truth + rng.normal(0, 0.05, 5_000) + np.where(flight == 12, 0.4, 0.0)
+    cloud.point_source_id = flight
+    cloud.write(str(tmp_path / "a.las"))
+    pyramid, out = tmp_path / "p.gpkg", tmp_path / "b.las"
+    done("analyse", tmp_path / "a.las", pyramid, "--quiet")
+    options = ["--denoise", "--pyramids", 2, "--stripes"]
+    said = done("filter", pyramid, out, *options, "point_source_id").out
+    assert "taken out of 2 lines" in said
+    apart = np.asarray(laspy.read(out).z) - truth
+    step = apart[flight == 12].mean() - apart[flight == 7].mean()
+    assert step == pytest.approx(0.0, abs=0.02)
+    words = refused("filter", pyramid, tmp_path / "c.las", *options, "rows")
+    assert "--stripes is rows, which a point cloud has not" in words
+    cloud_without = ["--denoise", "--stripes", "scan"]
+    words = refused("filter", pyramid, tmp_path / "c.las", *cloud_without)
+    assert "--stripes is 'scan', which the point cloud has not" in words

@@ -67,6 +67,12 @@ class TestFilter:
         assert made["RMS_CHANGE"] > 0
         assert any("noise is removed" in line for line in log.lines)
 
+    def test_stripes_along_rows_are_looked_for_and_told(self, run, pyramid, tmp_path):
+        log = Log()
+        parameters = {"INPUT": pyramid, "DENOISE": True, "STRIPES": "rows", "PYRAMIDS": 1}
+        run("filterlevels", {**parameters, "DEM": str(tmp_path / "f.tif")}, log)
+        assert any("lines" in line and "offsets" in line for line in log.lines)
+
     def test_gains_that_are_no_numbers_are_refused_before_it_starts(self, provider, pyramid):
         from qgis.core import QgsProcessingContext
 

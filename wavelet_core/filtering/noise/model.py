@@ -1,4 +1,4 @@
-"""What is known of the noise of a channel: its strength by place, its reach, outliers, rounding."""
+"""What is known of a channel's noise: its strength by place, reach, outliers, rounding, stripes."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from .by_place import map_of_noise
 from .by_scale import N_SCALES, deviations_by_scale, estimated_range, where_relief_ends
 from .outliers import without_outliers
 from .rounding import NO_ROUNDING, Rounding
+from .stripes import Stripes, stripes_of
 from .white import check_sigma, correlated_noise, noise_columns
 
 #: Where the deviation in the flattest places is less than these parts of that in the flatter half,
@@ -48,6 +49,8 @@ class Noise:
         Where the noise is, if it is correlated.
     n_standing_out : int
         Values that would be outliers, had they been asked for; they are still there.
+    stripes : Stripes or None
+        Offsets of lines, which were taken out before; None where no lines were given.
     is_rough : bool
         Whether relief as fine as the mesh cannot be separated from noise: the deviation is then
         that of the flattest places, and noise of unknown range is taken for white.
@@ -60,6 +63,7 @@ class Noise:
     rounding: Rounding = NO_ROUNDING
     plan: FloatArray | None = None
     n_standing_out: int = 0
+    stripes: Stripes | None = None
     is_rough: bool = False
 
     @property
@@ -103,6 +107,8 @@ class Noise:
         if self.outliers is not None:
             one = self.n_outliers == 1
             words.append(f"{self.n_outliers:,} outlier{'' if one else 's'} replaced")
+        if self.stripes is not None:
+            words.append(self.stripes.describe())
         return ", ".join(words)
 
     def _shaped(
@@ -122,10 +128,11 @@ def noise_of(
     noise_range: RangeOption = 0.0,
     local_noise: bool = False,
     outliers: bool = False,
+    lines: IntArray | None = None,
     seed: int = 0,
     tick: Callable[[], None] = lambda: None,
 ) -> tuple[Noise, FloatArray]:
-    """Return the noise of a column, and the column with its outliers replaced.
+    """Return the noise of a column, and the column without offsets of lines and outliers.
 
     Parameters
     ----------
@@ -141,6 +148,8 @@ def noise_of(
         Whether the deviation differs by place and is to be found there.
     outliers : bool
         Whether to look for outliers.
+    lines : ndarray of int64, shape (n_vertices,), optional
+        The line of each vertex, -1 for none, whose offsets are to be found.
     seed : int
     tick : callable
         Called now and then; it may raise, to stop.
@@ -153,14 +162,22 @@ def noise_of(
     check_sigma(sigma)
     _check_range(noise_range)
     n_vertices = mesh.n_vertices
+    white = noise_columns(n_vertices, seed)[:, :4]
+    bank, stripes = None, None
+    if lines is not None and len(mesh.faces):
+        bank = UndecimatedBank.from_mesh(mesh, N_SCALES + 1, white, tick=tick)
+        stripes = stripes_of(bank, mesh.vertices[:, :2], values, lines)
+        if stripes.deviation > 0:
+            values = values - stripes.of_vertices(lines)
     rounding = Rounding.of(mesh, values) if sigma is None else NO_ROUNDING
     noise, values = _plain_noise(mesh, values, sigma, rounding, outliers, tick)
+    noise = replace(noise, stripes=stripes)
     is_known = sigma is not None or n_vertices < LEAST_VERTICES
     is_plain = noise_range == 0.0 and not local_noise
     if (is_plain and is_known) or not len(mesh.faces) or np.ptp(values) == 0:
         return noise, values
-    white = noise_columns(n_vertices, seed)[:, :4]
-    bank = UndecimatedBank.from_mesh(mesh, N_SCALES + 1, white, tick=tick)
+    if bank is None:
+        bank = UndecimatedBank.from_mesh(mesh, N_SCALES + 1, white, tick=tick)
     plan = mesh.vertices[:, :2] - mesh.vertices[:, :2].min(axis=0)
     column = _Column(bank, plan, values, rounding, seed)
     if noise_range == "estimate":

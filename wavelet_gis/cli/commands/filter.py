@@ -87,6 +87,12 @@ def _add_noise(noise: argparse._ArgumentGroup) -> None:
         "--outliers", action="store_true", help="replace values that stand out of their ring first"
     )
     noise.add_argument(
+        "--stripes",
+        metavar="rows|columns|NAME",
+        help="take out an offset for each row or column of a raster, or for each value of a "
+        "dimension of points, such as the flight lines of point_source_id",
+    )
+    noise.add_argument(
         "--pyramids",
         dest="n_pyramids",
         type=int,
@@ -132,6 +138,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             noise_range=arguments.noise_range,
             local_noise=arguments.local_noise,
             outliers=arguments.outliers,
+            stripes=arguments.stripes,
             progress=progress,
         )
     layers = {} if arguments.layers is None else {"layers": arguments.layers}
