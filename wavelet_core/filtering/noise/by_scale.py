@@ -19,6 +19,8 @@ SHARE_SLOPED = 0.6
 POWERS_OF_RELIEF = (0.5, 0.75, 1.0)
 #: Correlation lengths that are tried, in mean distances of neighbours.
 TRIED_RANGES = (0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0)
+#: White parts of the variance that are tried beside correlated noise.
+WHITE_SHARES = (0.0, 0.003, 0.01)
 
 
 def deviations_by_scale(
@@ -95,15 +97,20 @@ def where_relief_ends(bank: UndecimatedBank, values: FloatArray, white: FloatArr
 def estimated_range(
     bank: UndecimatedBank, plan: FloatArray, values: FloatArray, seed: int
 ) -> float:
-    """Return the correlation length whose details fall off over the scales as those found do."""
+    """Return the correlation length whose details fall off over the scales as those found do.
+
+    Correlated noise has so little of the finest details that a hundredth of its variance in white
+    noise, or in relief as fine, shows beside it; a part as small is tried with each length.
+    """
     found = _robust_deviations(bank, values)
     spacing = float(np.sqrt(np.ptp(plan, axis=0).prod() / max(len(plan), 1)))
     generator = np.random.default_rng(seed)
-    misfits = []
-    for tried in TRIED_RANGES:
-        if tried == 0.0:
-            column = generator.standard_normal(len(plan))
-        else:
-            column = correlated_noise(plan, tried * spacing, 1, generator)[:, 0]
-        misfits.append(float(np.var(np.log(found / _robust_deviations(bank, column)))))
-    return TRIED_RANGES[int(np.argmin(misfits))] * spacing
+    white = _robust_deviations(bank, generator.standard_normal(len(plan)))
+    misfits = {(0.0, 0.0): float(np.var(np.log(found / white)))}
+    for tried in TRIED_RANGES[1:]:
+        column = correlated_noise(plan, tried * spacing, 1, generator)[:, 0]
+        squares = _robust_deviations(bank, column) ** 2
+        for share in WHITE_SHARES:
+            expected = np.sqrt(squares + share * white**2)
+            misfits[tried, share] = float(np.var(np.log(found / expected)))
+    return min(misfits, key=misfits.__getitem__)[0] * spacing

@@ -248,8 +248,9 @@ def _correlated(column: _Column, noise: Noise, noise_range: float, sigma: float 
     noise = replace(noise, reach=float(noise_range), plan=column.plan)
     if sigma is not None:
         return noise
-    half = column.deviations(noise)[0]
-    return replace(noise, sigma=max(float(np.median(half)), column.rounding.least))
+    half, flattest = column.deviations(noise)
+    deviation = min(float(np.median(half)), float(flattest.min()))
+    return replace(noise, sigma=max(deviation, column.rounding.least))
 
 
 def _without_relief(column: _Column, noise: Noise, white: FloatArray) -> Noise:
