@@ -13,7 +13,7 @@ from ...errors import OptionError
 from ...mesh.triangle_mesh import TriangleMesh
 from ..undecimated import UndecimatedBank
 from .by_place import map_of_noise
-from .by_scale import N_SCALES, deviations_by_scale, estimated_range, where_relief_ends
+from .by_scale import N_SCALES, deviations_by_scale, estimated_ranges, where_relief_ends
 from .outliers import without_outliers
 from .rounding import NO_ROUNDING, Rounding
 from .stripes import Stripes, stripes_of
@@ -181,9 +181,11 @@ def noise_of(
     plan = mesh.vertices[:, :2] - mesh.vertices[:, :2].min(axis=0)
     column = _Column(bank, plan, values, rounding, seed)
     if noise_range == "estimate":
-        noise_range = estimated_range(bank, plan, values, seed)
+        noise_range, better = estimated_ranges(bank, plan, values, seed)
         if n_vertices >= LEAST_VERTICES and _is_relief_as_fine(column, noise, noise_range):
             noise_range, noise = 0.0, replace(noise, is_rough=True)
+        elif noise_range > 0 and not _is_relief_as_fine(column, noise, better):
+            noise_range = better
     if noise_range > 0:
         noise = _correlated(column, noise, noise_range, sigma)
     elif not is_known and not local_noise:
