@@ -6,6 +6,7 @@ import ctypes
 import os
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 from wavelet_gis.errors import InputFileError
 
@@ -94,7 +95,7 @@ def require_bytes(n_bytes: int, name: str, what: str, available: int | None = No
 
 def available_bytes() -> int | None:
     """Return the memory that may still be taken; None where the system does not say."""
-    limits = (_of_system(), _of_group(), _of_process())
+    limits = (_of_system(), _of_group(), _of_old_group(), _of_process())
     return min((limit for limit in limits if limit is not None), default=None)
 
 
@@ -119,6 +120,22 @@ def _of_pages() -> int | None:
         return None
 
 
+class _GroupFiles(NamedTuple):
+    """What a version of control groups calls its figures of memory.
+
+    limit, used : str, names of files
+    cached : str, what the line of ``memory.stat`` begins with
+    """
+
+    limit: str
+    used: str
+    cached: str
+
+
+_GROUP = _GroupFiles("memory.max", "memory.current", "inactive_file ")
+_OLD_GROUP = _GroupFiles("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file ")
+
+
 def _of_group(root: Path = Path("/sys/fs/cgroup"), own: str | None = None) -> int | None:
     """Return what the control groups of the process have left, as in a container.
 
@@ -129,26 +146,40 @@ def _of_group(root: Path = Path("/sys/fs/cgroup"), own: str | None = None) -> in
     own : str, optional
         The process's own group, by default as the system says.
     """
-    if own is None:
-        try:
-            text = Path("/proc/self/cgroup").read_text("utf-8")
-            own = text.splitlines()[-1].partition("::")[2]
-        except (OSError, ValueError, IndexError):
-            own = ""
+    return _least_left(root, _own_group("") if own is None else own, _GROUP)
+
+
+def _of_old_group(root: Path = Path("/sys/fs/cgroup/memory"), own: str | None = None) -> int | None:
+    """Return the same of version 1 of the groups, whose memory is mounted by itself."""
+    return _least_left(root, _own_group("memory") if own is None else own, _OLD_GROUP)
+
+
+def _own_group(controller: str, path: Path = Path("/proc/self/cgroup")) -> str:
+    """Return the group of the process that has a controller, "" of version 2; "" without one."""
+    try:
+        rows = [row.split(":", 2) for row in path.read_text("utf-8").splitlines()]
+    except (OSError, ValueError):
+        return ""
+    found = (row[2] for row in rows if len(row) == 3 and controller in row[1].split(","))
+    return next(found, "")
+
+
+def _least_left(root: Path, own: str, files: _GroupFiles) -> int | None:
     # A group has no more than those around it; inside a container the own one is the root.
     parts = [part for part in own.split("/") if part]
     folders = [root.joinpath(*parts[:n]) for n in range(len(parts) + 1)]
-    return min((left for left in map(_left_in, folders) if left is not None), default=None)
+    every = (_left_in(folder, files) for folder in folders)
+    return min((left for left in every if left is not None), default=None)
 
 
-def _left_in(folder: Path) -> int | None:
+def _left_in(folder: Path, files: _GroupFiles) -> int | None:
     """Return what a control group has left; None where it has no limit.
 
     Files that are cached count as used, and go as soon as a program needs the memory.
     """
     try:
-        limit = (folder / "memory.max").read_text(encoding="ascii").strip()
-        used = (folder / "memory.current").read_text(encoding="ascii").strip()
+        limit = (folder / files.limit).read_text(encoding="ascii").strip()
+        used = (folder / files.used).read_text(encoding="ascii").strip()
     except OSError:
         return None
     if not (limit.isdigit() and used.isdigit()):
@@ -157,7 +188,7 @@ def _left_in(folder: Path) -> int | None:
         rows = (folder / "memory.stat").read_text(encoding="ascii").splitlines()
     except OSError:
         rows = []
-    cached = sum(int(row.split()[1]) for row in rows if row.startswith("inactive_file "))
+    cached = sum(int(row.split()[1]) for row in rows if row.startswith(files.cached))
     return max(int(limit) - max(int(used) - cached, 0), 0)
 
 

@@ -7,8 +7,9 @@ Run it with the Python of QGIS; the plugin is the zip of the last commit. Each c
 its own in which packages that QGIS does not bring are hidden; its input is synthetic terrain of
 1,000 x 1,000 cells, or 500,000 points. Seconds are those of the processor, so that other work on
 the machine does not count. ``bar`` is the longest time in which the progress bar showed nothing
-new, ``cancel`` the longest without a look at the cancel button. With ``--cancel`` each case is run
-again and cancelled where it had looked away for longest, and how long it took to end is said.
+new, which is a tenth of a percent or another line above it; ``cancel`` the longest without a look
+at the cancel button. With ``--cancel`` each case is run again and cancelled where it had looked
+away for longest, and how long it took to end is said.
 ``--page docs/howto/qgis.md`` puts the rows into the table there.
 """
 
@@ -48,6 +49,9 @@ EXTRA = (
     "CGAL",
     "shapely",
 )
+
+#: Percent of which `QgsFeedback.setProgress` shows nothing: less is no news.
+STEP_OF_BAR = 0.1
 
 #: Name of the case: algorithm, parameters. Words in braces are files that `prepare` has made.
 CASES: dict[str, tuple[str, dict[str, object]]] = {
@@ -375,8 +379,8 @@ def new_watch():
             return now
 
         def setProgress(self, percent: float) -> None:
-            if round(percent, 2) != self.shown:
-                self.shown = round(percent, 2)
+            if abs(percent - self.shown) >= STEP_OF_BAR:
+                self.shown = percent
                 self.moved = self.gap("moves", self.moved)
             super().setProgress(percent)
 

@@ -309,10 +309,10 @@ class FilterLevels(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        filtered = request.computed(compute, 0.05, 0.7)
+        filtered = request.computed(compute, 0.05, 0.69)
         for line in filtered.changes:
             request.say(line)
-        request.figures = request.computed(lambda work: _figures(filtered), 0.7, 0.7)
+        request.figures = request.computed(lambda work: _figures(filtered), 0.69, 0.7)
         results: Values = {}
         path = request.output_file("OUTPUT")
         if path:

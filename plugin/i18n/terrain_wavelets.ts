@@ -2565,7 +2565,7 @@
   </message>
   <message>
     <location filename="../../plugin/qgis_io/vectors.py"/>
-    <source>{}: the triangles have no Z, so they hold no elevations.</source>
+    <source>{}: the triangles have no Z, so they hold no elevations; give a layer whose geometries have Z.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -2565,8 +2565,8 @@
   </message>
   <message>
     <location filename="../../plugin/qgis_io/vectors.py"/>
-    <source>{}: the triangles have no Z, so they hold no elevations.</source>
-    <translation>{}: Die Dreiecke haben kein Z, also keine Höhen.</translation>
+    <source>{}: the triangles have no Z, so they hold no elevations; give a layer whose geometries have Z.</source>
+    <translation>{}: Die Dreiecke haben kein Z, also keine Höhen; geben Sie einen Layer an, dessen Geometrien Z haben.</translation>
   </message>
   <message>
     <location filename="../../plugin/qgis_io/vectors.py"/>

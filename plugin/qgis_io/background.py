@@ -25,12 +25,16 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 #: Seconds between two looks at the button, and those without news after which the bar creeps on.
-LOOK, SILENCE = 0.1, 0.4
-#: Share of the way that is open to it by which the bar creeps: before the first word of the work
-#: that is all of its part, later `LEAD` of what is left.
-CREEP, LEAD = 0.01, 0.5
-#: Steps of the bar that are seen; smaller ones are no news.
-LEAST = 0.002
+LOOK, SILENCE = 0.1, 0.6
+#: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): what the clock
+#: adds at a time.
+LEAST = 0.001
+#: How far, of a work's part, the clock may run ahead of what its pace so far lets expect. Then it
+#: adds `PACE` of what that pace gives, or `TRICKLE` of what is left; before the first word more.
+AHEAD, PACE, TRICKLE, FIRST_TRICKLE = 0.1, 0.5, 0.0004, 0.01
+#: Share of what is left that the clock may take before the next word of the work; before the first
+#: word it may take all.
+LEAD = 0.5
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
 WORK_PART = 0.9
 
@@ -45,11 +49,15 @@ class Bar:
     ----------
     now : float
         Seconds, at which the work begins.
+    width : float
+        How much of QGIS's bar it has.
     """
 
-    def __init__(self, now: float) -> None:
+    def __init__(self, now: float, width: float = 1.0) -> None:
+        self._least = LEAST / max(width, LEAST)
         self._shown, self._reported, self._goal = 0.0, 0.0, 1.0
         self._seen, self._moved = 0.0, now
+        self._began, self._word = now, now
 
     def at(self, fraction: float, now: float) -> float:
         """Return where it stands, in [0, 1].
@@ -67,12 +75,23 @@ class Bar:
             self._shown += share * (1.0 - self._shown)
             self._reported = reported
             self._goal = self._shown + LEAD * (1.0 - self._shown)
+            self._word = now
         if now - self._moved > SILENCE:
-            self._shown += CREEP * (self._goal - self._shown)
+            self._shown += min(self._creep(now), 0.1 * (self._goal - self._shown))
             self._moved = now
-        if self._shown - self._seen >= LEAST:
+        if self._shown - self._seen >= self._least:
             self._seen, self._moved = self._shown, now
         return self._shown
+
+    def _creep(self, now: float) -> float:
+        """Return what the clock adds."""
+        left = self._goal - self._shown
+        if self._word == self._began:
+            return 1.01 * self._least if self._shown < AHEAD else FIRST_TRICKLE * left
+        pace = self._reported / (self._word - self._began)
+        if self._shown < pace * (now - self._began) + AHEAD:
+            return 1.01 * self._least
+        return max(PACE * pace * (now - self._moved), TRICKLE * left)
 
 
 class Work:
@@ -128,7 +147,7 @@ def computed(
         target=context.run, args=(_run, work, function, shown_now()), daemon=True
     )
     thread.start()
-    bar = Bar(perf_counter())
+    bar = Bar(perf_counter(), stop - start)
     while thread.is_alive():
         thread.join(LOOK)
         shown = bar.at(work.fraction, perf_counter())

@@ -15,6 +15,7 @@ from qgis.core import QgsRasterFileWriter
 from ..ui.enums import WKT_FOR_GDAL
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
+from .crs_and_progress import require_running
 from .gdal_errors import without_exceptions
 from .raster_reader import GDAL_TYPES, strips
 
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 
     from wavelet_gis.model.dem import Dem, GridGeometry
     from wavelet_gis.products.vertex_raster import Bands
+
+#: Of the time in which bands are written: all but their reading back.
+_SHARE_OF_WRITING = 0.7
 
 
 def write_dem(
@@ -71,7 +75,8 @@ def write_dem(
         dataset = None  # closes the file
         if not is_written:
             raise refusal(gdal.GetLastErrorMsg())
-        read_back(scratch, partial(_check, values=dem.values[None]))
+        look = partial(_look, feedback)
+        read_back(scratch, partial(_check, values=dem.values[None], look=look))
 
 
 def write_bands(
@@ -113,14 +118,25 @@ def write_bands(
             band.SetDescription(bands.names[k])
             band.SetNoDataValue(bands.nodata)
             is_written &= _write_strips(band, bands.values[k], feedback)
-            report((k + 1) / n_bands)
+            report(_SHARE_OF_WRITING * (k + 1) / n_bands)
         band = dataset = None  # closes the file
         if not is_written:
             raise refusal(gdal.GetLastErrorMsg())
-        read_back(scratch, partial(_check, values=bands.values))
+
+        def look(share: float) -> None:
+            require_running(feedback)
+            report(_SHARE_OF_WRITING + (1.0 - _SHARE_OF_WRITING) * share)
+
+        read_back(scratch, partial(_check, values=bands.values, look=look))
 
 
-def _check(path: str | os.PathLike[str], values: NDArray[Any]) -> None:
+def _look(feedback: QgsFeedback, share: float) -> None:
+    require_running(feedback)
+
+
+def _check(
+    path: str | os.PathLike[str], values: NDArray[Any], look: Callable[[float], None]
+) -> None:
     """Read a raster back: GDAL may fail when it closes a file, and does not say so."""
     from wavelet_gis.errors import OutputFileError
 
@@ -134,6 +150,7 @@ def _check(path: str | os.PathLike[str], values: NDArray[Any]) -> None:
     for k in range(n_bands):
         band = dataset.GetRasterBand(k + 1)
         for start in range(0, n_rows, at_once):
+            look((k + start / n_rows) / n_bands)
             due = values[k, start : start + at_once]
             read = band.ReadRaster(0, start, n_columns, len(due))
             if read is None:

@@ -115,9 +115,10 @@ def read_triangles(
     """
     if not QgsWkbTypes.hasZ(source.wkbType()):
         raise QgsProcessingException(
-            tr("{}: the triangles have no Z, so they hold no elevations.").format(
-                source.sourceName()
-            )
+            tr(
+                "{}: the triangles have no Z, so they hold no elevations; give a layer whose "
+                "geometries have Z."
+            ).format(source.sourceName())
         )
     corners = []
     part: Any  # of a polygon layer, a polygon

@@ -142,7 +142,7 @@ def refusal(packages: Sequence[Package] = ()) -> str | None:
     absent = missing((*ALWAYS, *packages))
     if not absent:
         return None
-    names = ", ".join(package.module for package in absent)
+    names = ", ".join(package.pip.partition("[")[0] for package in absent)
     return tr("missing Python package: {names}. Install it {remedy} and start QGIS again.").format(
         names=names, remedy=remedy(absent)
     )

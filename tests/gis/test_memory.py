@@ -78,3 +78,30 @@ def test_addresses_in_use_are_not_free():
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert 1 << 30 < int(said.stdout) < 5 << 30
+
+
+def old_group(folder, limit, used, cached=0):
+    """Write what the system says of a control group of version 1."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "memory.limit_in_bytes").write_text(f"{limit}\n")
+    (folder / "memory.usage_in_bytes").write_text(f"{used}\n")
+    (folder / "memory.stat").write_text(f"cache 9\ninactive_file 1\ntotal_inactive_file {cached}\n")
+
+
+def test_groups_of_the_first_version_have_limits_too(tmp_path):
+    """They were not read: a container under such a system was killed instead of refusing."""
+    old_group(tmp_path, 9_223_372_036_854_771_712, 10**9)
+    old_group(tmp_path / "docker" / "one", 8_000, 7_900, cached=6_000)
+    assert _memory._of_old_group(tmp_path, "/docker/one") == 6_100
+    assert _memory._of_old_group(tmp_path, "/docker") > 10**18
+    assert _memory._of_old_group(tmp_path / "none", "/docker") is None
+
+
+def test_the_group_of_a_process_is_that_of_the_version(tmp_path):
+    listed = tmp_path / "cgroup"
+    listed.write_text("12:cpu,cpuacct:/a\n9:memory:/docker/one\n1:name=systemd:/b\n0::/user/x:y\n")
+    assert _memory._own_group("memory", listed) == "/docker/one"
+    assert _memory._own_group("", listed) == "/user/x:y"
+    listed.write_text("0::/user\n")
+    assert _memory._own_group("memory", listed) == ""
+    assert _memory._own_group("memory", tmp_path / "none") == ""

@@ -44,13 +44,7 @@ def band_gains(
             "a band is given by {0} or by {1} on the ground; give one.", "levels", "lengths"
         )
     low, high = levels if levels is not None else lengths  # type: ignore[misc]
-    if not low <= high:
-        raise OptionError(
-            "the band runs from {low} to {high}; give the smaller bound first.",
-            "levels" if levels is not None else "lengths",
-            low=low,
-            high=high,
-        )
+    require_order(low, high, "levels" if levels is not None else "lengths")
     if levels is not None:
         for level in levels:
             pyramid.require_details(level, "levels")
@@ -69,6 +63,24 @@ def band_gains(
             most=max(sizes),
         )
     return gains
+
+
+def require_order(low: float, high: float, option: str) -> None:
+    """Raise :class:`OptionError` unless the bounds of a band are in order.
+
+    Parameters
+    ----------
+    low, high : float
+    option : str
+        The parameter that names them, for the error.
+    """
+    if not low <= high:
+        raise OptionError(
+            "the band runs from {low} to {high}; give the smaller bound first.",
+            option,
+            low=low,
+            high=high,
+        )
 
 
 def relifted(pyramid: Pyramid, mesh: TriangleMesh) -> Pyramid:

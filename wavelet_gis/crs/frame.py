@@ -89,6 +89,14 @@ class CoordinateSystem:
     semi_major: float = 6378137.0
     inverse_flattening: float = 298.257223563
 
+    @property
+    def working_unit(self) -> float:
+        """Metres in one unit of the working frame, of z too: those of a geographic CRS are metres.
+
+        1 where the unit is not known.
+        """
+        return 1.0 if self.kind == "geographic" else self.horizontal_unit
+
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as JSON-able values."""
         return asdict(self)

@@ -31,7 +31,7 @@ __all__ = [
 #: Elevations beyond this, in any unit, leave no digits for geometry.
 LARGEST_ELEVATION = 1e30
 
-#: And no place is further from the origin of a CRS.
+#: And no place is farther from the origin of a CRS.
 LARGEST_COORDINATE = 1e15
 
 #: Floats that differ from the nodata value by no more than this part of it are nodata to GDAL, four

@@ -74,7 +74,7 @@ def plane_mesh(
 
     plane = plane_for(system, in_file.vertices[:, :2], to_crs or "auto")
     x, y = projected(system, plane, in_file.vertices[:, 0], in_file.vertices[:, 1])
-    metres = mesh.vertices[:, 2] * (1.0 if is_geographic else system.horizontal_unit)
+    metres = mesh.vertices[:, 2] * system.working_unit
     vertices = mesh.vertices.copy()
     vertices[:, 0], vertices[:, 1], vertices[:, 2] = x, y, metres / plane.horizontal_unit
     placed = TriangleMesh(vertices, mesh.faces, in_file.attributes, in_file.attribute_names)

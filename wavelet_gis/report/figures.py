@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import OptionError, Progress, TriangleMesh, surface_shape
+from wavelet_core import Progress, TriangleMesh, surface_shape
 from wavelet_core.metrics import surface_errors
 from wavelet_core.progress import report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.workflows.read_off.levels import default_levels
+from wavelet_gis.workflows.read_off.levels import checked_levels, default_levels
 from wavelet_gis.workflows.solver.quality import triangle_quality
 
 __all__ = ["ReportData", "report_data"]
@@ -71,15 +71,12 @@ def report_data(
     Raises
     ------
     OptionError
-        A level that the pyramid does not have.
+        A level that the pyramid does not have, or none.
     Cancelled
         ``progress`` returned False.
     """
     pyramid = geo.pyramid
-    chosen = default_levels(geo) if levels is None else list(dict.fromkeys(levels))
-    for level in chosen:
-        if not 0 <= level <= pyramid.n_levels:
-            raise OptionError(f"there is no level {level}; they are 0 to {pyramid.n_levels}.")
+    chosen = default_levels(geo) if levels is None else checked_levels(geo, list(levels))
     finest = pyramid.synthesise()
     points = _points_of(geo, finest)
     rows, shown, errors = [], {pyramid.n_levels: finest}, {}

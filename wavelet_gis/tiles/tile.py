@@ -58,7 +58,11 @@ class Tiled:
         return [row for row in self.index.records.values() if row["status"] == "failed"]
 
     def figures(self) -> dict[str, Any]:
-        """Return what it is as JSON-able values."""
+        """Return what it is as JSON-able values.
+
+        ``n_pieces`` counts the tiles and groups of all stages that there is a record of, those
+        without points and those that were set aside among them; ``n_stages`` the stages.
+        """
         plan, records = self.index.plan, self.index.records
         whole = [row for row in records.values() if row["status"] == "whole"]
         size = {"n_rows": plan.shape[0], "n_columns": plan.shape[1]}

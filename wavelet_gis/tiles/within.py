@@ -23,12 +23,15 @@ from wavelet_gis.tiles.index import TileIndex
 from wavelet_gis.tiles.input_points import InputPoints, points_of_tile
 from wavelet_gis.tiles.plan import Piece
 
-__all__ = ["Chosen", "PointErrors", "pieces_within"]
+__all__ = ["Chosen", "PointErrors", "TilePoints", "pieces_within"]
 
 
 #: Part of its extent by which a point may be beside a mesh by rounding: in a hundred kilometres a
 #: tenth of a millimetre.
 BESIDE = 1e-9
+#: Bytes of the points of tiles that are kept while the levels of a group are tried, and those of
+#: its parts: some five tiles of 1,024 × 1,024 cells.
+KEPT_BYTES = 1 << 28
 
 
 class PointErrors(NamedTuple):
@@ -67,13 +70,13 @@ def pieces_within(index: TileIndex, area: Area, limit: float) -> Iterator[Chosen
     limit : float
         Vertical distance in the working frame.
     """
-    top = index.plan.n_stages - 1
+    top, tiles = index.plan.n_stages - 1, TilePoints(index)
     waiting = [piece for piece in reversed(index.plan.pieces(top)) if area.has_piece(piece)]
     while waiting:
         piece = waiting.pop()
         status = index.records.get(piece, {}).get("status", "missing")
         if status == "whole":
-            chosen = (_tile if piece.stage == 0 else _group)(index, area, piece, limit)
+            chosen = (_tile if piece.stage == 0 else _group)(tiles, area, piece, limit)
             if chosen is not None:
                 yield chosen
                 continue
@@ -82,10 +85,51 @@ def pieces_within(index: TileIndex, area: Area, limit: float) -> Iterator[Chosen
             waiting += reversed(parts)
 
 
-def _tile(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen:
+class TilePoints:
+    """The input's points by tile; what is read stays, as far as there is room, for other levels.
+
+    Parameters
+    ----------
+    index : TileIndex
+    room : int
+        Bytes that may stay.
+    """
+
+    def __init__(self, index: TileIndex, room: int = KEPT_BYTES) -> None:
+        self.index = index
+        self._room, self._kept = room, dict[Piece, InputPoints]()
+
+    def of_group(self, piece: Piece, area: Area) -> Iterator[InputPoints]:
+        """Yield the points of each tile of a group that has a surface in an area."""
+        tiles = self.index.plan.tiles(piece)
+        # groups come before their parts, so no other one will ask for those beyond this one
+        inside = set(tiles)
+        self._kept = {tile: points for tile, points in self._kept.items() if tile in inside}
+        for tile in tiles:
+            record = self.index.records.get(tile, {})
+            if record.get("status") == "whole" and area.has_piece(tile):
+                yield self._of(tile)
+
+    def _of(self, tile: Piece) -> InputPoints:
+        from wavelet_gis.io.pyramid.pyramid_file import read_input
+
+        if tile not in self._kept:
+            points = points_of_tile(self.index, tile, read_input(self.index.path(tile)))
+            if self._bytes_with(points) > self._room:
+                return points
+            self._kept[tile] = points
+        return self._kept[tile]
+
+    def _bytes_with(self, points: InputPoints) -> int:
+        every = (*self._kept.values(), points)
+        return sum(column.nbytes for one in every for column in one)
+
+
+def _tile(tiles: TilePoints, area: Area, piece: Piece, limit: float) -> Chosen:
     """Return a tile, fine where it has to be."""
     from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
+    index = tiles.index
     geo = read_pyramid(index.path(piece))
     part = mesh_of_accuracy(geo.pyramid, limit)
     points = points_of_tile(index, piece, geo)
@@ -94,11 +138,11 @@ def _tile(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen:
     return Chosen(piece, part.mesh, part.level, (counted,))
 
 
-def _group(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen | None:
+def _group(tiles: TilePoints, area: Area, piece: Piece, limit: float) -> Chosen | None:
     """Return the coarsest level of a group that keeps a tolerance; None where none does."""
     from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
-    pyramid = None
+    index, pyramid = tiles.index, None
     best: Chosen | None = None
     low, high = 0, int(index.records[piece]["n_levels"])
     level = high  # most tolerances are too strict for it, and the first tile tells
@@ -106,7 +150,7 @@ def _group(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen |
         if pyramid is None:
             pyramid = read_pyramid(index.path(piece)).pyramid
         mesh = pyramid.mesh(level)
-        errors = _errors_within(index, area, piece, mesh, limit)
+        errors = _errors_within(tiles, area, piece, mesh, limit)
         if errors is not None:
             best = Chosen(piece, mesh, level, errors)
             high = level - 1
@@ -119,19 +163,14 @@ def _group(index: TileIndex, area: Area, piece: Piece, limit: float) -> Chosen |
 
 
 def _errors_within(
-    index: TileIndex, area: Area, piece: Piece, mesh: TriangleMesh, limit: float
+    tiles: TilePoints, area: Area, piece: Piece, mesh: TriangleMesh, limit: float
 ) -> tuple[PointErrors, ...] | None:
     """Return the errors of the input in a group; None once a vertex of it is beyond the limit.
 
     One that has no face is beyond any limit.
     """
-    from wavelet_gis.io.pyramid.pyramid_file import read_input
-
     found = []
-    for tile in index.plan.tiles(piece):
-        if index.records.get(tile, {}).get("status") != "whole" or not area.has_piece(tile):
-            continue
-        points = points_of_tile(index, tile, read_input(index.path(tile)))
+    for points in tiles.of_group(piece, area):
         below = _errors_on(mesh, points.places)
         of_vertices = points.vertex_heights + below[: len(points.vertex_heights)]
         if not (np.abs(of_vertices) <= limit).all():

@@ -193,8 +193,8 @@ def details(
     Raises
     ------
     OptionError
-        Another quantity, a level for anything but the shape, or details of a pyramid without
-        levels.
+        Another quantity, a level for anything but the shape, a channel for that, or details of a
+        pyramid without levels.
     """
     geo = pyramid_of(data)
     if what not in QUANTITIES:
@@ -205,6 +205,10 @@ def details(
             known=", ".join(QUANTITIES),
         )
     check_level_of(what, level)
+    if channel is not None and what == "shape":
+        raise OptionError(
+            "{0} is not for {1} shape, which is of z; leave it out.", "channel", "what"
+        )
     if what not in ("shape", "level"):
         require_levels(geo)
     chosen = geo.pyramid.n_levels if level is None else level

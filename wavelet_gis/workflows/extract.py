@@ -241,12 +241,14 @@ def extract(
         raise OptionError("give one of {0}, {1} and {2}.", "level", "vertices", "max_error")
     if zones is not None and (level is not None or vertices is not None):
         raise OptionError("{0} go with {1} only; leave them out.", "zones", "max_error")
-    if vertices is not None:
-        return _between(geo, mesh_of_size(geo.pyramid, vertices))
     if max_error is not None or zones is not None:
         return _within(geo, max_error, zones, zone_field, refine, progress)
+    if zone_field is not None:
+        raise OptionError("{0} goes with {1}; give both or neither.", "zone_field", "zones")
     if refine != 0:
         raise OptionError("{0} goes with {1}; give both or neither.", "refine", "max_error")
+    if vertices is not None:
+        return _between(geo, mesh_of_size(geo.pyramid, vertices))
     chosen = level or 0
     mesh = geo.pyramid.mesh(chosen)
     return Surface(geo, mesh, geo.pyramid.vertex_ids(chosen), chosen, _errors_at(geo, chosen))

@@ -20,7 +20,7 @@ from wavelet_core import (
     level_spacings,
     relifted,
 )
-from wavelet_core.filtering.gains import channel_index
+from wavelet_core.filtering.gains import channel_index, require_order
 from wavelet_core.filtering.noise.model import Noise, RangeOption
 from wavelet_core.filtering.noise.white import estimate_noise
 from wavelet_core.lifting.spacings import mesh_spacing
@@ -193,7 +193,8 @@ def filter_pyramid(
     geo = pyramid_of(data)
     single = list(gains.items() if isinstance(gains, dict) else gains)
     asks_scales = bool(single) or levels is not None or metres is not None or drop_coarse
-    asks_denoising = denoise is not False
+    is_estimated = isinstance(denoise, bool | np.bool_)
+    asks_denoising = not is_estimated or bool(denoise)
     of_noise = {
         "noise_range": noise_range != 0.0,
         "local_noise": local_noise,
@@ -205,6 +206,8 @@ def filter_pyramid(
     _require_work(of_noise, asks_scales=asks_scales, asks_denoising=asks_denoising)
     n_pyramids = N_PYRAMIDS if n_pyramids is None else n_pyramids
     require_levels(geo)
+    if metres is not None:
+        require_order(*metres, "metres")
     builds_levels = metres is not None and not _has_sizes(geo, metres)
     wanted = chosen_gains(geo, single, levels=levels, metres=None if builds_levels else metres)
     changed, sigmas = geo, dict[str, float]()
@@ -213,7 +216,7 @@ def filter_pyramid(
     if asks_denoising:
         changed, sigmas = denoised(
             changed,
-            None if denoise is True else denoise,
+            None if is_estimated else float(denoise),
             channels=("z",) if channels is None else channels,
             n_pyramids=n_pyramids,
             noise_range=noise_range,
@@ -532,7 +535,7 @@ def _has_sizes(geo: GeoPyramid, metres: tuple[float, float]) -> bool:
 
 def _metre(geo: GeoPyramid) -> float:
     """Return a metre in the unit of the working frame, where that is known."""
-    return 1.0 if geo.system.kind == "geographic" else 1.0 / geo.system.horizontal_unit
+    return 1.0 / geo.system.working_unit
 
 
 def _noise_of(pyramid: Pyramid, finest: TriangleMesh, channel: str) -> float:

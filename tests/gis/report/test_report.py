@@ -141,7 +141,7 @@ def test_chosen_levels_go_from_fine_to_coarse(raster_record):
     assert levels[-1] == 0
     assert levels == sorted(levels, reverse=True)
     assert list(report_data(raster_record, [2, 1]).errors) == [2, 1]
-    with pytest.raises(OptionError, match="no level 9; they are 0 to 4"):
+    with pytest.raises(OptionError, match=r"no level 9; they are 0 \(coarsest\) to 4"):
         report_data(raster_record, [9])
 
 

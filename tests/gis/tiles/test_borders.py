@@ -41,7 +41,7 @@ def plan_of(rows, columns, spacing=2, reach=8):
 
 #   10 .   a   .   b   .          Two tiles, 0 to 10 and 10 to 20, of one row.
 #    8 . . . . . d . . . .        Of each four steps of the line, the point nearest to it:
-#    5 . c . . e . . f . .          steps 8 to 11: d at 11 (b and a are further off)
+#    5 . c . . e . . f . .          steps 8 to 11: d at 11 (b and a are farther off)
 #    2 . . . . . g . . h .          steps 4 to 7:  e at 9
 #    0 i   .   |   .   j            steps 0 to 3:  g at 10
 HAND = {

@@ -23,7 +23,7 @@ from wavelet_core.metrics import surface_errors
 from wavelet_gis.errors import CrsWarning, InputFileError, OutputFileError, TerrainWarning
 from wavelet_gis.tiles.cloud.cut import CUT, source_record
 from wavelet_gis.tiles.cloud.plan import plan_of_clouds
-from wavelet_gis.tiles.cloud.restore import _make_room, names_of_sources
+from wavelet_gis.tiles.cloud.restore import _make_room, loose_points, names_of_sources
 from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.plan import Piece, TilePlan
 
@@ -304,8 +304,9 @@ def test_a_damaged_file_costs_its_tiles_until_it_is_mended(parts, tiled, tmp_pat
     assert_same_cloud(east, tmp_path / "east.laz")
 
 
-def test_points_without_a_surface_come_back_too(tmp_path):
-    """Nine tiles, of which the middle row has a few points on a line, and one tile has none."""
+@pytest.fixture
+def with_two_alone(tmp_path):
+    """Nine tiles, of which the middle row has two points in one and none in the others."""
     path = write_las(tmp_path / "raw.las", 25000)
     las = laspy.read(path)
     x, y = np.asarray(las.x) - 500000, np.asarray(las.y) - 5100000
@@ -315,6 +316,20 @@ def test_points_without_a_surface_come_back_too(tmp_path):
     keep[lone] = True
     las.points = las.points[keep]
     las.write(tmp_path / "a.las")
+    return las.xyz[np.searchsorted(np.flatnonzero(keep), lone)]
+
+
+def test_points_without_a_surface_have_the_heights_of_their_own_file(with_two_alone, tmp_path):
+    """The steps are those of the first file, and the offset was that of the file they are in."""
+    split(tmp_path / "a.las", tmp_path / "parts")
+    tiled = wg.tile_clouds(tmp_path / "parts", tmp_path / "t", tile=33, levels=3)
+    assert tiled.index.records[Piece(0, 1, 0)]["status"] == "loose"
+    places, _ = loose_points(tiled.index, Piece(0, 1, 0))
+    heights = tiled.index.plan.local_frame.to_file(places)[:, 2]
+    np.testing.assert_allclose(np.sort(heights), np.sort(with_two_alone[:, 2]), atol=1e-9)
+
+
+def test_points_without_a_surface_come_back_too(with_two_alone, tmp_path):
     tiled = wg.tile_clouds(tmp_path / "a.las", tmp_path / "t", tile=33, levels=3)
     status = {piece: row["status"] for piece, row in tiled.index.records.items()}
     assert status[Piece(0, 1, 0)] == "loose"

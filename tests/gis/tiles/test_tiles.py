@@ -20,6 +20,7 @@ from wavelet_core import TriangleMesh
 from wavelet_core.errors import MissingDependencyError, OptionError
 from wavelet_core.metrics import surface_errors
 from wavelet_gis.errors import InputFileError, OutputFileError, TerrainWarning
+from wavelet_gis.io.pyramid import pyramid_file
 from wavelet_gis.io.pyramid.pyramid_file import read_levels, read_pyramid
 from wavelet_gis.io.raster import write_dem
 from wavelet_gis.tiles.area import area_of
@@ -27,7 +28,7 @@ from wavelet_gis.tiles.index import open_index
 from wavelet_gis.tiles.piece import cells_of, join
 from wavelet_gis.tiles.plan import Piece, TilePlan
 from wavelet_gis.tiles.read import terrain_of_region
-from wavelet_gis.tiles.within import _errors_within
+from wavelet_gis.tiles.within import TilePoints, _errors_within, pieces_within
 
 SIZE = 32
 
@@ -365,19 +366,32 @@ def test_a_vertex_of_the_input_without_a_face_is_beyond_any_tolerance(tiled):
     top = index.plan.pieces(index.plan.n_stages - 1)[0]
     pyramid = read_levels(index.path(top), 0).pyramid
     mesh, area = pyramid.mesh(pyramid.n_levels), area_of(index.plan, None, None)
-    assert _errors_within(index, area, top, mesh, 1e9) is not None
-    assert _errors_within(index, area, top, mesh, 0.01) is None
+    assert _errors_within(TilePoints(index), area, top, mesh, 1e9) is not None
+    assert _errors_within(TilePoints(index), area, top, mesh, 0.01) is None
     # Narrower by rounding alone: what is beside it then is measured at its border.
     middle = mesh.vertices.mean(axis=0)
     shrunk = middle + (mesh.vertices - middle) * [1 - 1e-9, 1 - 1e-9, 1.0]
     narrower = TriangleMesh(shrunk, mesh.faces)
     assert np.isnan(surface_errors(narrower, mesh.vertices)).any()
-    found = _errors_within(index, area, top, narrower, 1e9)
+    found = _errors_within(TilePoints(index), area, top, narrower, 1e9)
     assert found is not None
     assert all(np.isfinite(part.errors).all() for part in found)
     off = np.abs(mesh.vertices[mesh.faces].mean(axis=1) - middle)[:, :2].max(axis=1)
     holed = TriangleMesh(mesh.vertices, mesh.faces[off > 40.0])
-    assert _errors_within(index, area, top, holed, 1e9) is None
+    assert _errors_within(TilePoints(index), area, top, holed, 1e9) is None
+
+
+@pytest.mark.parametrize("room", [0, 1 << 28])
+def test_the_points_of_a_tile_are_read_once_whatever_levels_are_tried(tiled, monkeypatch, room):
+    """They were read again for each level of each group."""
+    read = []
+    plain = pyramid_file.read_input
+    monkeypatch.setattr(pyramid_file, "read_input", lambda path: read.append(path) or plain(path))
+    monkeypatch.setattr(TilePoints.__init__, "__defaults__", (room,))
+    area = area_of(tiled.index.plan, None, None)
+    chosen = list(pieces_within(tiled.index, area, 25.0))
+    assert any(one.piece.stage > 0 for one in chosen)
+    assert (len(read) == len(set(read))) == (room > 0)
 
 
 def test_a_tolerance_counts_the_input_of_pyramids_without_a_record(dem, tmp_path):

@@ -317,7 +317,9 @@ def test_labels_that_do_not_fit_are_refused(halves, cloud_record, tmp_path):
     with pytest.raises(InputFileError, match="whole numbers"):
         labels_from_layer(halves, text, "class")
     lonlat = write_layer(tmp_path / "ll.gpkg", [shapely.box(0, 0, 9, 9)], [1], crs="EPSG:4326")
-    with pytest.raises(InputFileError, match="reproject the labels"):
+    with pytest.raises(
+        InputFileError, match=r"reproject the labels to that first \(ogr2ogr -t_srs EPSG:\d+\)"
+    ):
         labels_from_layer(cloud_record, lonlat, "class")
 
 

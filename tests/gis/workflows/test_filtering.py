@@ -109,3 +109,21 @@ def test_sizes_are_filtered_on_whatever_pyramid(tmp_path):
     assert filter_pyramid(geo, metres=(1e5, np.inf)).change()[0] > smooth.change()[0]
     with pytest.raises(OptionError, match="smaller bound first"):
         filter_pyramid(geo, metres=(30.0, 20.0))
+
+
+def test_bounds_in_the_wrong_order_are_refused_before_the_work(in_feet):
+    """Denoising was done first, and another pyramid built."""
+    told = []
+    with pytest.raises(OptionError, match=r"the band runs from 90\.0 to 30\.0"):
+        filter_pyramid(in_feet, metres=(90.0, 30.0), denoise=True, progress=told.append)
+    assert told == []
+
+
+def test_the_true_of_numpy_estimates_the_noise_too(in_feet):
+    """It was taken for a standard deviation of 1."""
+    plain, other = (
+        filter_pyramid(in_feet, denoise=wish, n_pyramids=1) for wish in (True, np.True_)
+    )
+    assert plain.sigmas == other.sigmas
+    with pytest.raises(OptionError, match="nothing to change"):
+        filter_pyramid(in_feet, denoise=np.False_)

@@ -72,6 +72,26 @@ def test_figures_are_json(analysis):
         assert json.loads(json.dumps(result.figures()))
 
 
+@pytest.mark.parametrize(
+    ("rules", "said"),
+    [
+        ({"vertices": 50, "refine": 3}, "refine goes with max_error"),
+        ({"vertices": 50, "zone_field": "m"}, "zone_field goes with zones"),
+        ({"level": 1, "zone_field": "m"}, "zone_field goes with zones"),
+    ],
+)
+def test_what_extract_would_not_heed_is_refused(analysis, rules, said):
+    """It was passed over without a word."""
+    with pytest.raises(OptionError, match=said):
+        wg.extract(analysis, **rules)
+
+
+def test_the_shape_has_no_channel(analysis):
+    """One was passed over without a word, also one that there is not."""
+    with pytest.raises(OptionError, match="channel is not for what shape"):
+        wg.details(analysis, what="shape", channel="class")
+
+
 def test_extract_tells_the_errors_of_its_level(analysis):
     surface = wg.extract(analysis, level=2)
     expected = analysis.geo.errors_at(2)

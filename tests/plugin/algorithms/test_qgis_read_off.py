@@ -213,3 +213,30 @@ def test_a_folder_of_something_else_is_not_replaced(refused, made, tmp_path):
     told = refused("webterrain", {"INPUT": str(made / "p.gpkg"), "OUTPUT": str(tmp_path)})
     assert "layer.json" in told or "tile set" in told
     assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+def test_reading_bands_back_moves_the_bar_and_heeds_cancel(qgis, provider, tmp_path):
+    """Two seconds passed for thirty bands of a million cells."""
+    from qgis.core import QgsCoordinateReferenceSystem, QgsFeedback
+    from terrain_wavelets.plugin.qgis_io.raster_writer import write_bands
+
+    from wavelet_core import Cancelled
+    from wavelet_gis.model.dem import GridGeometry
+    from wavelet_gis.products.vertex_raster import Bands
+
+    geometry = GridGeometry((10, 12), (1.0, 0.0, 5e5, 0.0, -1.0, 5e6))
+    values = np.arange(360, dtype="<f4").reshape(3, 10, 12)
+    bands = Bands(values, ("a", "b", "c"), geometry)
+    crs, seen = QgsCoordinateReferenceSystem("EPSG:25832"), []
+    write_bands(str(tmp_path / "a.tif"), bands, crs, QgsFeedback(), seen.append)
+    assert seen == sorted(seen)
+    assert len(seen) == 6
+    feedback = QgsFeedback()
+
+    def cancel_at_the_end(share):
+        if share > 0.75:
+            feedback.cancel()
+
+    with pytest.raises(Cancelled):
+        write_bands(str(tmp_path / "b.tif"), bands, crs, feedback, cancel_at_the_end)
+    assert [path.name for path in tmp_path.iterdir()] == ["a.tif"]

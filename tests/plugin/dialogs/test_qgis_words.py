@@ -120,6 +120,19 @@ def test_the_bar_never_rests_until_the_work_has_caught_up(qgis, silence, step):
     assert places[-1] < 1.0
 
 
+@pytest.mark.parametrize(("width", "seconds"), [(0.2, 120), (0.65, 500)])
+def test_the_bar_keeps_its_room_through_long_work(qgis, width, seconds):
+    """The clock took the room of nine minutes in three; then the bar stood, for 81 s at a time."""
+    from plugin.qgis_io.background import Bar
+
+    bar = Bar(0.0, width)
+    places = [bar.at((tenth // 10) / seconds, tenth / 10) for tenth in range(10 * seconds)]
+    each_second = width * np.diff(places[::10])
+    assert (each_second > 1e-4).all()
+    assert np.median(each_second) > 0.3 * width / seconds
+    assert np.abs(np.array(places[::10]) - np.arange(seconds) / seconds).max() < 0.3
+
+
 def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
     """A step that asks nobody for long, as a triangulation does."""
     import threading

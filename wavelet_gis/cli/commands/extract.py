@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     which.add_argument(
         "--vertices", type=int, metavar="N", help="just so many: a level, or part of the step below"
     )
-    add_max_error_argument(which, "the least with no input vertex further off, vertically")
+    add_max_error_argument(which, "the least with no input vertex farther off, vertically")
     add_zone_arguments(parser)
     parser.add_argument(
         "--bbox",

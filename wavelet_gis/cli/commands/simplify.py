@@ -44,7 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("output", help=f"ending in {surface_suffixes()}")
     rule = parser.add_mutually_exclusive_group()
     rule.add_argument("--vertices", type=int, metavar="N", help="keep so many vertices")
-    add_max_error_argument(rule, "keep so many that no input vertex is further off, vertically")
+    add_max_error_argument(rule, "keep so many that no input vertex is farther off, vertically")
     rule.add_argument(
         "--rmse",
         dest="max_rms",

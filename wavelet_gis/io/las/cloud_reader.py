@@ -28,6 +28,7 @@ from wavelet_gis.io.las.layout import (
     read_layout,
     records_of,
 )
+from wavelet_gis.io.las.octree import Box
 from wavelet_gis.model.attributes.ground import GROUND_CLASS
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.notes import warn
@@ -56,8 +57,6 @@ NOISE_CLASSES = (7, 18)
 #: No points are compressed to less than one part in this; thousands of equal ones come near it.
 _MOST_COMPRESSED = 100_000
 
-Box = tuple[float, float, float, float]
-
 #: Point formats with references to waveform packets.
 _WAVEFORM_FORMATS = (4, 5, 9, 10)
 
@@ -75,7 +74,7 @@ def read_cloud(
     carry: bool = True,
     keep_noise: bool = False,
     keep_withheld: bool = False,
-    bbox: tuple[float, float, float, float] | None = None,
+    bbox: Box | None = None,
     resolution: float | None = None,
 ) -> tuple[PointCloud, Georeference]:
     """Return the chosen points of a LAS or LAZ file, and their georeference.

@@ -14,19 +14,15 @@ from typing import BinaryIO, NamedTuple
 
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.las.layout import LasLayout
+from wavelet_gis.io.las.octree import MOST_LEVELS, Box, finest_level, reaches_into
 
 __all__ = ["Chunk", "chunks_within", "is_copc"]
-
-Box = tuple[float, float, float, float]
 
 #: Centre, half of the side, spacing of the points at level 0, offset and bytes of the first page.
 _INFO = struct.Struct("<5d2Q")
 
 #: Level, x, y, z, offset, bytes, points; -1 points for a page of further entries.
 _ENTRY = struct.Struct("<4iQ2i")
-
-#: Levels of a tree, at most; each halves a side.
-_MOST_LEVELS = 32
 
 
 class Chunk(NamedTuple):
@@ -78,18 +74,14 @@ def chunks_within(
     )
     if not (half > 0 and spacing > 0):
         raise _damaged(name, f"a tree of side {2 * half:g} with points {spacing:g} apart")
-    deepest = _MOST_LEVELS
-    if resolution is not None:
-        deepest = next((k for k in range(_MOST_LEVELS) if spacing / 2**k <= resolution), deepest)
+    finest = finest_level(spacing, resolution)
     found = []
     size = os.fstat(stream.fileno()).st_size
     for level, column, row, chunk in _entries(name, stream, size, page, n_bytes):
         side = 2 * half / 2**level
         west, south = x - half + column * side, y - half + row * side
-        is_beside = bbox is not None and (
-            west > bbox[2] or west + side < bbox[0] or south > bbox[3] or south + side < bbox[1]
-        )
-        if level <= deepest and chunk.n_points > 0 and not is_beside:
+        is_wanted = level <= finest and chunk.n_points > 0
+        if is_wanted and reaches_into(west, south, (side, side), bbox):
             found.append(chunk)
     if sum(chunk.n_points for chunk in found) > layout.n_points:
         raise _damaged(name, f"more points in the tree than the {layout.n_points} of the header")
@@ -113,7 +105,7 @@ def _entries(
             if n_points == -1:
                 pages.append((offset, length))
                 continue
-            if not (0 <= level < _MOST_LEVELS and n_points >= 0 and length >= 0):
+            if not (0 <= level < MOST_LEVELS and n_points >= 0 and length >= 0):
                 raise _damaged(name, f"a node of level {level} with {n_points} points")
             if offset + length > size:
                 raise _damaged(name, f"points at byte {offset} of {size}")

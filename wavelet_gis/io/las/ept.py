@@ -17,6 +17,7 @@ from wavelet_gis._fields import Fields, parse_json
 from wavelet_gis.errors import InputFileError, PointCloudWarning
 from wavelet_gis.io.formats import EPT
 from wavelet_gis.io.las.layout import read_layout
+from wavelet_gis.io.las.octree import MOST_LEVELS, Box, finest_level, reaches_into
 from wavelet_gis.notes import warn
 
 __all__ = ["EptSet", "nodes_within", "read_ept"]
@@ -24,13 +25,10 @@ __all__ = ["EptSet", "nodes_within", "read_ept"]
 #: What a hierarchy has in the place of points for a node that has a file of its own.
 _ELSEWHERE = -1
 
-#: Level, x, y and z of a node; levels beyond would be smaller than the steps of any coordinates.
+#: Level, x, y and z of a node.
 _KEY = re.compile(r"(\d{1,2})-(\d{1,10})-(\d{1,10})-(\d{1,10})")
-_MOST_LEVELS = 32
 
 _MOST_POINTS = 2**63 - 1
-
-Box = tuple[float, float, float, float]
 
 
 class EptSet(NamedTuple):
@@ -111,19 +109,14 @@ def nodes_within(
         Where the hierarchy counts other points than the files have.
     """
     low, high = ept.bounds[:3], ept.bounds[3:]
-    finest = _MOST_LEVELS
-    if resolution is not None and resolution > 0:
-        spacing = (high[0] - low[0]) / ept.span
-        finest = next((k for k in range(_MOST_LEVELS) if spacing / 2**k <= resolution), finest)
+    finest = finest_level((high[0] - low[0]) / ept.span, resolution)
     found = []
     for node in sorted(_nodes(ept)):
         if node.level > finest or node.n_points == 0:
             continue
-        sides = [(high[k] - low[k]) / 2**node.level for k in range(2)]
-        x, y = low[0] + node.x * sides[0], low[1] + node.y * sides[1]
-        if bbox is None or (
-            x <= bbox[2] and y <= bbox[3] and x + sides[0] >= bbox[0] and y + sides[1] >= bbox[1]
-        ):
+        sides = (high[0] - low[0]) / 2**node.level, (high[1] - low[1]) / 2**node.level
+        west, south = low[0] + node.x * sides[0], low[1] + node.y * sides[1]
+        if reaches_into(west, south, sides, bbox):
             found.append(node)
     if not found:
         raise InputFileError(
@@ -167,6 +160,7 @@ def _file_of(ept: EptSet, node: Node) -> str:
 def _nodes(ept: EptSet) -> Iterator[Node]:
     """Yield the nodes of the hierarchy, each once, whatever file it is listed in."""
     waiting, seen = [Node(0, 0, 0, 0, _ELSEWHERE)], set()
+    listed: set[tuple[int, ...]] = set()
     while waiting:
         page = waiting.pop()
         file = ept.folder / "ept-hierarchy" / f"{page.name}.json"
@@ -175,7 +169,9 @@ def _nodes(ept: EptSet) -> Iterator[Node]:
             if node is None:
                 raise InputFileError(f"{file}: {name[:40]!r} is no node; get the set again.")
             if count != _ELSEWHERE:
-                yield node
+                if node[:4] not in listed:
+                    listed.add(node[:4])
+                    yield node
             elif node[:4] not in seen:  # a page that lists itself is read once
                 seen.add(node[:4])
                 waiting.append(node)
@@ -187,7 +183,7 @@ def _node(name: str, count: object) -> Node | None:
     if match is None or not isinstance(count, int) or not _ELSEWHERE <= count <= _MOST_POINTS:
         return None
     level, x, y, z = map(int, match.groups())
-    if level >= _MOST_LEVELS or max(x, y, z) >= 1 << level:
+    if level >= MOST_LEVELS or max(x, y, z) >= 1 << level:
         return None
     return Node(level, x, y, z, count)
 

@@ -53,7 +53,7 @@ def doubtful_value(values: NDArray[Any]) -> tuple[float, int, float] | None:
     -------
     tuple or None
         The lowest or highest number, when programs like to fill holes with it or the earth has
-        no such height, and it is further from the next one than all the others are apart.
+        no such height, and it is farther from the next one than all the others are apart.
     """
     if len(values) < 2:
         return None

@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -280,28 +281,58 @@ def points_of(
     rows: list[NDArray[np.int64]] = []
     files: list[NDArray[np.int32]] = []
     for number in numbers:
-        record = source_record(folder, number)
-        if record is None or record["status"] != "whole":
-            why = "it was not cut" if record is None else record["reason"]
-            raise InputFileError(why)
+        slices = _slices_of(folder, number)
+        here = slices.by_tile.get((piece.row, piece.column))
+        if here is None:
+            continue
         dtype = record_dtype(folder, number)
         path = Path(folder) / CUT / f"{number:05d}.points"
         with open(path, "rb") as stream:
-            for row, column, offset, n_points in record["slices"]:
-                if (row, column) != (piece.row, piece.column):
-                    continue
+            for offset, n_points in here:
                 stream.seek(offset)
                 rows.append(np.fromfile(stream, "<i8", n_points))
                 part = np.fromfile(stream, dtype, n_points)
                 if len(part) < n_points:
                     raise InputFileError(f"{path}: the file ends early; start again.")
-                for axis, shift in zip("XYZ", record["shift"], strict=True):
+                for axis, shift in zip("XYZ", slices.shift, strict=True):
                     part[axis] = _moved(plan, number, part[axis], shift)
                 parts.append(part)
                 files.append(np.full(n_points, number, np.int32))
     if not parts:
         return None
     return CutPoints(np.concatenate(parts), np.concatenate(files), np.concatenate(rows))
+
+
+class _Slices(NamedTuple):
+    """Where the points of each tile are in the cut of an input.
+
+    shift : list of int, what its stored X, Y and Z differ by from those of the first
+    by_tile : dict of (row, column) to a list of (offset, n_points), one for each batch
+    """
+
+    shift: list[int]
+    by_tile: dict[tuple[int, int], list[tuple[int, int]]]
+
+
+def _slices_of(folder: str | os.PathLike[str], number: int) -> _Slices:
+    """Return the slices of an input, looked up in its record once for all its tiles."""
+    try:
+        stat = os.stat(Path(folder) / SOURCES / f"{number:05d}.json")
+    except FileNotFoundError as error:
+        raise InputFileError("it was not cut") from error
+    return _read_slices(os.fspath(folder), number, stat.st_size, stat.st_mtime_ns)
+
+
+@lru_cache(maxsize=32)
+def _read_slices(folder: str, number: int, n_bytes: int, changed: int) -> _Slices:
+    """Return the slices of an input out of a record of that size and time."""
+    record = source_record(folder, number)
+    if record is None or record["status"] != "whole":
+        raise InputFileError("it was not cut" if record is None else record["reason"])
+    by_tile: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for row, column, offset, n_points in record["slices"]:
+        by_tile.setdefault((row, column), []).append((offset, n_points))
+    return _Slices(record["shift"], by_tile)
 
 
 def _moved(plan: TilePlan, number: int, stored: NDArray[np.int32], shift: int) -> NDArray[np.int32]:

@@ -172,7 +172,7 @@ def loose_points(index: TileIndex, piece: Piece) -> tuple[NDArray[np.float64], N
     rows = used["Y"].astype(np.int64) - lattice.first[0]
     columns = used["X"].astype(np.int64) - lattice.first[1]
     x, y = plan.places(rows, columns)
-    z = used["Z"] * layout.scales[2] + layout.offsets[2]
+    z = used["Z"] * lattice.scales[2] + lattice.offsets[2]
     places = np.column_stack([frame.local_x(x), frame.local_y(y), frame.local_z(z)])
     return places, rows * plan.shape[1] + columns
 

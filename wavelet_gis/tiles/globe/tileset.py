@@ -247,12 +247,7 @@ def _on_earth(
     longitude, latitude = projected(
         data.system, coordinate_system("EPSG:4326"), places[:, 0], places[:, 1]
     )
-    is_geographic = data.system.kind == "geographic"
-    return (
-        longitude,
-        latitude,
-        points[:, 2] * (1.0 if is_geographic else data.system.horizontal_unit),
-    )
+    return longitude, latitude, points[:, 2] * data.system.working_unit
 
 
 class _Writer:

@@ -227,9 +227,10 @@ def _require_same_crs(geo: GeoPyramid, name: str, crs: str | None) -> None:
 
     ours, theirs = CRS.from_wkt(geo.system.wkt), CRS.from_user_input(crs)
     if not ours.to_2d().equals(theirs.to_2d(), ignore_axis_order=True):
+        code = ":".join(ours.to_authority() or (ours.name,))
         raise InputFileError(
             f"{name}: the labels are in {theirs.name}, the pyramid in {ours.name}; reproject the "
-            "labels."
+            f"labels to that first (ogr2ogr -t_srs {code})."
         )
 
 
@@ -250,17 +251,13 @@ def _inside_polygons(
 ) -> IntArray:
     import shapely
 
+    plan = vertices[:, :2]
     labels = np.full(len(vertices), NOT_KNOWN, dtype=np.int64)
     for shape, label in zip(shapes[::-1], classes[::-1], strict=True):  # the first one wins
         if shape is None or label < 0:
             continue
-        x_min, y_min, x_max, y_max = shape.bounds
-        near = np.flatnonzero(
-            (vertices[:, 0] >= x_min)
-            & (vertices[:, 0] <= x_max)
-            & (vertices[:, 1] >= y_min)
-            & (vertices[:, 1] <= y_max)
-        )
+        low, high = np.reshape(shape.bounds, (2, 2))
+        near = np.flatnonzero(((plan >= low) & (plan <= high)).all(axis=1))
         shapely.prepare(shape)
         inside = shapely.intersects_xy(shape, vertices[near, 0], vertices[near, 1])
         labels[near[inside]] = label

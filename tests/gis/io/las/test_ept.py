@@ -150,6 +150,15 @@ def test_what_cannot_be_is_refused(tmp_path, described, counts, said):
     assert "\n" not in str(error.value)
 
 
+def test_a_node_that_two_pages_list_is_one(tmp_path):
+    """Its points came twice."""
+    make_set(tmp_path / "set", counts={"1-0-0-0": 60, "1-1-0-0": -1})
+    page = tmp_path / "set" / "ept-hierarchy" / "1-1-0-0.json"
+    page.write_text(json.dumps({"1-0-0-0": 60, "1-1-0-0": 60}))
+    nodes = nodes_within(read_ept(tmp_path / "set" / "ept.json"))
+    assert len(nodes) == len(set(nodes)) == 5
+
+
 def test_a_page_that_lists_itself_is_read_once(tmp_path):
     make_set(tmp_path / "set", counts={"0-0-0-0": 60, "1-0-0-0": -1})
     page = tmp_path / "set" / "ept-hierarchy" / "1-0-0-0.json"

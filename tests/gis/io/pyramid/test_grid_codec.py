@@ -9,6 +9,7 @@ from hypothesis.extra import numpy as hnp
 
 from wavelet_core.errors import Cancelled, PyramidError
 from wavelet_gis.io.pyramid.codecs.grid_codec import (
+    RELIEF_CLASSES,
     decode_grid,
     encode_grid,
     integers_of,
@@ -112,3 +113,13 @@ def test_the_numbers_of_a_raster_are_packed_in_parts_that_are_reported():
     assert np.diff([0.0, *seen, 1.0]).max() <= 0.26
     with pytest.raises(Cancelled):
         encode_grid(numbers, valid, lambda fraction: fraction < 0.6)
+
+
+@pytest.mark.parametrize("count", [0, 1, 64, -64, 2**62, 2**70])
+def test_classes_that_do_not_count_the_cells_are_refused(count):
+    """Classes of more than all cells ended in a ValueError."""
+    valid = np.ones((8, 8), dtype=bool)
+    residuals = encode_grid(np.arange(64, dtype=np.int64), valid)
+    n_classes = len(RELIEF_CLASSES) + 1
+    with pytest.raises(PyramidError, match="do not fit its mask"):
+        decode_grid(residuals._replace(classes=(count,) * n_classes), valid)

@@ -222,7 +222,14 @@ def decode_grid(residuals: Residuals, valid: NDArray[np.bool_]) -> NDArray[np.in
         numbers.shape == (int(np.count_nonzero(valid)),)
         and numbers.dtype.kind == "u"
         and beyond.dtype == np.uint64
-        and (not classes or len(classes) == len(RELIEF_CLASSES) + 1)
+        and (
+            not classes
+            or (
+                len(classes) == len(RELIEF_CLASSES) + 1
+                and min(classes) >= 0
+                and sum(classes) == len(numbers)
+            )
+        )
     )
     _require(is_sound)
     zigzag = numbers.astype(np.uint64)
