@@ -5,9 +5,10 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest
 # Two workers on two cores take little more than half the time; tests that time nothing allow it.
-PARALLEL ?= --numprocesses auto
+# Those that share something costly are a group, for one of them.
+PARALLEL ?= --numprocesses auto --dist loadgroup
 
-.PHONY: help demo test test-compiled test-plain test-fast test-qgis test-qgis-numpy2 lint check docs plugin release clean
+.PHONY: help demo test test-compiled test-plain test-fast test-exhaustive test-qgis test-qgis-numpy2 lint check docs plugin release clean
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
@@ -15,6 +16,7 @@ help:
 	@echo "make test-compiled  the tests of core, files and command line, kernels compiled by numba"
 	@echo "make test-plain  the core's small tests again, without numba: on whole arrays"
 	@echo "make test-fast  the core's small tests only, compiled"
+	@echo "make test-exhaustive  every case of what make test has a sample of, also part of make check"
 	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
 	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"
 	@echo "make lint       ruff, mypy and numpydoc"
@@ -38,13 +40,16 @@ test:
 
 # The plugin under Qt 6 needs PyQt6 and no QGIS, so it is among these.
 test-compiled: $(BIN)/.installed-dev
-	$(PYTEST) --ignore tests/plugin/algorithms --ignore tests/plugin/dialogs --ignore-glob '*/test_qgis_*' --ignore tests/models $(PARALLEL)
+	$(PYTEST) --ignore tests/plugin/algorithms --ignore tests/plugin/dialogs --ignore-glob '*/test_qgis_*' --ignore tests/models -m "not exhaustive" $(PARALLEL)
 
 test-plain: $(BIN)/.installed-dev
 	TERRAIN_WAVELETS_NO_NUMBA=1 $(PYTEST) tests/core -m "not large and not data" $(PARALLEL)
 
 test-fast: $(BIN)/.installed-dev
 	$(PYTEST) tests/core tests/test_imports.py -m "not large and not data" -x -q
+
+test-exhaustive: $(BIN)/.installed-dev
+	$(PYTEST) tests/gis -m exhaustive $(PARALLEL)
 
 # Under CI these fail where they cannot run; elsewhere they say so in one line.
 test-qgis:
@@ -68,7 +73,7 @@ docs: $(BIN)/.installed-docs
 plugin:
 	@$(PYTHON) scripts/plugin_zip.py
 
-check: lint test docs
+check: lint test test-exhaustive docs
 
 # Files for a release in dist/; says what only a person can fill in. make release DRAFT=--draft makes them all the same.
 release: $(BIN)/.installed-release

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from conftest import DATA
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -47,16 +48,17 @@ def test_the_page_names_no_path_of_a_machine():
 
 
 @pytest.mark.data
-@pytest.mark.parametrize("size", [60_000, pytest.param(None, marks=pytest.mark.large)])
-def test_the_page_tells_what_happens(data_folder, size):
-    """Small files by default; all that do not take minutes when asked for."""
+@pytest.mark.parametrize(
+    ("least", "limit"),
+    [(0, 60_000), pytest.param(60_000, data_table.LARGE_FILE, marks=pytest.mark.large)],
+)
+def test_the_page_tells_what_happens(data_folder, least, limit):
     n_tried = 0
     for path in data_table.files(data_folder):
-        limit = data_table.LARGE_FILE if size is None else size
-        if path.stat().st_size < limit:
+        if least <= path.stat().st_size < limit:
             row_of(path, data_folder)
             n_tried += 1
-    assert n_tried > 60
+    assert n_tried > (60 if least == 0 else 20)
 
 
 #: Larger ones come back in tests/gis/io/test_round_trip.py, and here where the variable is set.
@@ -64,10 +66,19 @@ HUGE_FILE = 3_000_000
 HUGE_VARIABLE = "TERRAIN_WAVELETS_HUGE_FILES"
 
 
+def large_files():
+    """Return the large files that are tried, one for each test."""
+    limit = sys.maxsize if os.environ.get(HUGE_VARIABLE) else HUGE_FILE
+    found = data_table.files(DATA) if DATA.is_dir() else []
+    return [
+        pytest.param(path, id=path.name)
+        for path in found
+        if data_table.is_large(path) and path.stat().st_size < limit
+    ] or [pytest.param(None, id="absent")]
+
+
 @pytest.mark.data
 @pytest.mark.large
-def test_the_page_tells_what_happens_to_large_files(data_folder):
-    limit = sys.maxsize if os.environ.get(HUGE_VARIABLE) else HUGE_FILE
-    for path in data_table.files(data_folder):
-        if data_table.is_large(path) and path.stat().st_size < limit:
-            row_of(path, data_folder)
+@pytest.mark.parametrize("path", large_files())
+def test_the_page_tells_what_happens_to_large_files(data_folder, path):
+    row_of(path, data_folder)

@@ -48,30 +48,39 @@ def save(
         See `wavelet_gis.products.layers.pyramid_layers`.
     """
     from wavelet_gis.io.atomic import new_file
-    from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
+    from wavelet_gis.io.pyramid.pyramid_file import SHARE_OF_WRITING, write_pyramid
     from wavelet_gis.products.layers import n_features, pyramid_layers
 
     from ..qgis_io.geopackage import add_layers
 
     request.stage(tr("Writing the pyramid"))
-    # a vertex of the pyramid and a row of a layer take about as long
+    # a vertex of the pyramid and a row of a layer take about as long; it is read back after both
     n_vertices, n_rows = geo.pyramid.n_vertices(geo.pyramid.n_levels), n_features(geo, layers)
-    middle = start + (stop - start) * n_vertices / (n_vertices + n_rows)
+    of_pyramid = (stop - start) * n_vertices / (n_vertices + n_rows)
+    middle = start + SHARE_OF_WRITING * of_pyramid
+    last = stop - (1.0 - SHARE_OF_WRITING) * of_pyramid
+    writes, reads_back = request.progress(start, middle), request.progress(last, stop)
+
+    def report(fraction: float) -> bool:
+        if fraction <= SHARE_OF_WRITING:
+            return writes(fraction / SHARE_OF_WRITING)
+        return reads_back((fraction - SHARE_OF_WRITING) / (1.0 - SHARE_OF_WRITING))
+
     with new_file(path, overwrite=True) as scratch:
         is_alone = layers == "none"
-        write_pyramid(scratch, geo, request.progress(start, middle), is_alone=is_alone)
+        write_pyramid(scratch, geo, report, is_alone=is_alone)
         if not is_alone:
             add_layers(
                 scratch,
                 pyramid_layers(geo, layers),
                 layer_wkt(geo),
                 request.feedback,
-                request.progress(middle, stop),
+                request.progress(middle, last),
                 n_rows,
             )
     remember(path)
     _add_to_map(request, path)
-    request.progress(middle, stop)(1.0)
+    reads_back(1.0)
 
 
 def add_map_parameter(algorithm: TerrainWaveletsAlgorithm) -> None:

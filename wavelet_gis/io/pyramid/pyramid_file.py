@@ -66,6 +66,7 @@ from wavelet_gis.model.geo_pyramid import GeoPyramid
 __all__ = [
     "FORMATS_READ",
     "FORMAT_VERSION",
+    "SHARE_OF_WRITING",
     "read_input",
     "read_levels",
     "read_pyramid",
@@ -78,7 +79,7 @@ __all__ = [
 _SHARE_OF_ENCODING, _SHARE_OF_LISTING = 0.5, 0.1
 
 #: Part of the time of writing that is spent before the file is read back.
-_SHARE_OF_WRITING = 0.8
+SHARE_OF_WRITING = 0.8
 
 #: Arrays of so few bytes, before they are compressed, are written in small pages.
 _SMALL_BYTES = 4 << 20
@@ -124,7 +125,7 @@ def write_pyramid(
             register_attributes_table(connection, table, description)
         write_level_rows(connection, geo)
         work = sum(map(work_of, arrays.values()))
-        of_arrays = part_of(progress, share, _SHARE_OF_WRITING)
+        of_arrays = part_of(progress, share, SHARE_OF_WRITING)
         write_arrays(connection, arrays, pool, _share_of(work, of_arrays))
         entries = read_entries(connection, with_checksums=True)
         checksums = checksums_of(texts, read_level_rows(connection), entries)
@@ -256,7 +257,7 @@ def _read_back(
     def count(kind: str, share: float) -> None:
         shares[kind] = share
         done = sum(shares.values()) / 2
-        report(progress, _SHARE_OF_WRITING + (1.0 - _SHARE_OF_WRITING) * done, _CANCELLED)
+        report(progress, SHARE_OF_WRITING + (1.0 - SHARE_OF_WRITING) * done, _CANCELLED)
 
     verified = _share_of(total, lambda share: count("bytes", share))
     try:

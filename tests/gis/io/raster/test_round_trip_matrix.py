@@ -1,6 +1,7 @@
 """DEMs of every type, nodata value, scale, mask, CRS and orientation come back bit for bit.
 
-By default a sample runs in which every pair of values of two axes occurs; the whole is `large`.
+By default a sample runs in which every pair of values of two axes occurs; the whole is marked
+`exhaustive`.
 """
 
 import itertools
@@ -149,7 +150,7 @@ def test_a_sample_of_the_matrix(tmp_path):
     come_back(tmp_path, sample())
 
 
-@pytest.mark.large
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("dtype", DTYPES)
 def test_the_whole_matrix(tmp_path, dtype):
     cases = [c for c in itertools.product(*AXES) if c[0] == dtype and has_meaning(c)]
