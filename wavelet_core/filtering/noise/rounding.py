@@ -19,7 +19,7 @@ LEAST_ALIKE = 0.5
 #: On slopes, where the share of edges across a step is more than the last of these numbers,
 #: neighbours are not alike. With 8 there (and 0.25 and 0.4) the error is 1.7 % higher on the
 #: average of 19 cases on 13 windows of five DEMs, :func:`without_terraces` included: from 7 % lower
-#: to 6 % higher.
+#: to 7 % higher.
 ROUNDED_TERRACES, ROUNDED_SLOPES, SHARES_BETWEEN = 6.0, 12.0, (0.2, 0.4)
 #: Peaks and pits of one vertex, over the share of edges across a step, below which all noise is
 #: that of rounding, which makes none.
