@@ -390,15 +390,18 @@ def as_markdown(results):
     n_cells = sum(len(kinds) for kinds in results.values())
     others = "; the others: " + ", ".join(others) if others else ""
     lines += ["", f"Ours is lowest in {lowest} of {n_cells} cells{others}."]
-    told = [
-        f"`{terrain}` {cell['told the lines']['rmse']:.3g} ({cell['ours']:.3g})"
+    pairs = {
+        terrain: (cell["told the lines"]["rmse"], cell["ours"])
         for terrain, kinds in results.items()
         for cell in kinds.values()
         if "told the lines" in cell
-    ]
-    if told:
+    }
+    if pairs:
+        told = [f"`{name}` {other:.3g} ({ours:.3g})" for name, (other, ours) in pairs.items()]
+        lower = sum(ours < other for other, ours in pairs.values())
         words = "Striped, a Gaussian after each line's mean is brought to the blurred mean of those"
         lines += ["", f"{words} around it, both of the best width (ours): {', '.join(told)}."]
+        lines[-1] += f" Ours is lower in {lower} of {len(pairs)}."
     return "\n".join(lines)
 
 

@@ -53,6 +53,14 @@ def test_correlated_noise_goes_as_far_as_with_the_best_gaussian(noise_range):
     assert "correlated over" in found["z"].describe()
 
 
+def test_a_range_is_found_beside_a_little_white_noise():
+    """A hundredth of the variance in white noise made two cells of a range of three."""
+    noisy = HILLS + blurred_noise(0.3) + np.random.default_rng(5).normal(0, 0.03, HILLS.shape)
+    noise = noise_of(mesh_of(noisy), noisy.ravel(), noise_range="estimate")[0]
+    assert noise.reach == pytest.approx(3.0, abs=0.1)
+    assert noise.sigma == pytest.approx(0.3, rel=0.25)
+
+
 def test_white_noise_is_found_to_be_white():
     noisy = mesh_of(HILLS + np.random.default_rng(1).normal(0, 0.3, HILLS.shape))
     noise, values = noise_of(

@@ -13,7 +13,7 @@ from ...errors import OptionError
 from ...mesh.triangle_mesh import TriangleMesh
 from ..undecimated import UndecimatedBank
 from .by_place import map_of_noise
-from .by_scale import N_SCALES, deviations_by_scale, estimated_range, where_relief_ends
+from .by_scale import N_SCALES, deviations_by_scale, estimated_ranges, where_relief_ends
 from .outliers import without_outliers
 from .rounding import NO_ROUNDING, Rounding
 from .stripes import Stripes, stripes_of
@@ -181,9 +181,11 @@ def noise_of(
     plan = mesh.vertices[:, :2] - mesh.vertices[:, :2].min(axis=0)
     column = _Column(bank, plan, values, rounding, seed)
     if noise_range == "estimate":
-        noise_range = estimated_range(bank, plan, values, seed)
+        noise_range, better = estimated_ranges(bank, plan, values, seed)
         if n_vertices >= LEAST_VERTICES and _is_relief_as_fine(column, noise, noise_range):
             noise_range, noise = 0.0, replace(noise, is_rough=True)
+        elif noise_range > 0 and not _is_relief_as_fine(column, noise, better):
+            noise_range = better
     if noise_range > 0:
         noise = _correlated(column, noise, noise_range, sigma)
     elif not is_known and not local_noise:
@@ -248,8 +250,9 @@ def _correlated(column: _Column, noise: Noise, noise_range: float, sigma: float 
     noise = replace(noise, reach=float(noise_range), plan=column.plan)
     if sigma is not None:
         return noise
-    half = column.deviations(noise)[0]
-    return replace(noise, sigma=max(float(np.median(half)), column.rounding.least))
+    half, flattest = column.deviations(noise)
+    deviation = min(float(np.median(half)), float(flattest.min()))
+    return replace(noise, sigma=max(deviation, column.rounding.least))
 
 
 def _without_relief(column: _Column, noise: Noise, white: FloatArray) -> Noise:
