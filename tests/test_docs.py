@@ -1,5 +1,6 @@
 """What the pages of the documentation show works: snippets, notebooks, commands, links."""
 
+import argparse
 import re
 import shlex
 from pathlib import Path
@@ -53,6 +54,44 @@ def test_commands_have_the_options_that_are_shown(page):
         if words[0].isupper() or words[0].startswith("--"):  # COMMAND, or what prints and ends
             continue
         parser.parse_args(words)  # ends the program where it does not know a word
+
+
+#: Flags of pip and of the scripts in benchmarks/ that pages name.
+OF_OTHERS = set(
+    [
+        "--autzen-points",
+        "--cold",
+        "--large",
+        "--moves",
+        "--no-deps",
+        "--only",
+        "--page",
+        "--peers",
+        "--picture",
+        "--plot",
+        "--read",
+        "--real",
+        "--system-site-packages",
+        "--tree",
+        "--user",
+    ]
+)
+
+
+def flags_of(parser):
+    found = set()
+    for action in parser._actions:
+        found.update(action.option_strings)
+        if isinstance(action, argparse._SubParsersAction):
+            found = found.union(*map(flags_of, action.choices.values()))
+    return found
+
+
+@pytest.mark.parametrize("page", ["README.md", *PAGES])
+def test_flags_in_the_text_are_those_of_a_command(page):
+    """A page named --sigma, which no command has."""
+    named = set(re.findall(r"`(?:[^`\n]*\s)?(--[a-z][a-z-]+)", (ROOT / page).read_text("utf-8")))
+    assert named <= flags_of(argument_parser()) | OF_OTHERS
 
 
 def write_breaklines(folder):

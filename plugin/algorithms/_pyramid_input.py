@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     from ..qgis_io.background import Work
 
+#: Part of the bar in which a pyramid is read: without numba that is most of the work of many.
+READING = 0.3
+
 
 class PyramidAlgorithm(TerrainWaveletsAlgorithm):
     """Base of the algorithms that read a pyramid file."""
@@ -69,7 +72,8 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
                 return read_input(path, work.progress)
             return load(path, level=level, progress=work.progress).geo
 
-        geo = request.computed(read, 0.0, 0.05)
+        geo = request.computed(read, 0.0, READING)
+        request.begins_at(0.05)
         for line in geo.history:
             request.say(tr("Changed since its analysis: {}").format(line))
         return geo

@@ -57,6 +57,7 @@ class Request:
         #: Sizes and errors of what was made, for the metadata of every layer.
         self.figures: dict[str, Any] = {}
         self._shown = 0.0  # where the bar stands
+        self._from, self._to = 0.0, 0.0  # a part of the work begins here, and there on the bar
 
     # What was asked for.
 
@@ -199,14 +200,27 @@ class Request:
         self.feedback.setProgressText(text)
         require_running(self.feedback)
 
+    def begins_at(self, start: float) -> None:
+        """Let the parts that follow share what is left of the bar, named as if it stood at `start`.
+
+        For a first part that takes long: the algorithms need not know.
+        """
+        self._from, self._to = start, self._shown
+
+    def _on_bar(self, start: float, stop: float) -> tuple[float, float]:
+        """Return where a part begins and ends on the bar, which never runs back."""
+        scale = (1.0 - self._to) / (1.0 - self._from)
+        places = (self._to + scale * (part - self._from) for part in (start, stop))
+        begin, end = (max(place, self._shown) for place in places)
+        return begin, end
+
     def progress(self, start: float = 0.0, stop: float = 1.0) -> Callable[[float], bool]:
         """Return a progress function that drives a part of QGIS's bar.
 
         The bar never runs back: which parts there are depends on the outputs that are wanted, and
         what a file is read back by reports after all that was written to it.
         """
-        start = max(start, self._shown)
-        stop = max(start, stop)
+        start, stop = self._on_bar(start, stop)
         drive = progress(self.feedback)
 
         def report(fraction: float) -> bool:
@@ -227,8 +241,7 @@ class Request:
         start, stop : float
             The part of the bar that it drives.
         """
-        start = max(start, self._shown)
-        self._shown = max(start, stop)
+        start, self._shown = self._on_bar(start, stop)
         return computed(self.feedback, function, start, self._shown)
 
     def _is_open(self, name: str) -> bool:
