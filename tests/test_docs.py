@@ -57,25 +57,23 @@ def test_commands_have_the_options_that_are_shown(page):
 
 
 #: Flags of pip and of the scripts in benchmarks/ that pages name.
-OF_OTHERS = set(
-    [
-        "--autzen-points",
-        "--cold",
-        "--large",
-        "--moves",
-        "--no-deps",
-        "--only",
-        "--page",
-        "--peers",
-        "--picture",
-        "--plot",
-        "--read",
-        "--real",
-        "--system-site-packages",
-        "--tree",
-        "--user",
-    ]
-)
+OF_OTHERS = {
+    "--autzen-points",
+    "--cold",
+    "--large",
+    "--moves",
+    "--no-deps",
+    "--only",
+    "--page",
+    "--peers",
+    "--picture",
+    "--plot",
+    "--read",
+    "--real",
+    "--system-site-packages",
+    "--tree",
+    "--user",
+}
 
 
 def flags_of(parser):
