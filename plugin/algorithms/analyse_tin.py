@@ -321,7 +321,7 @@ class AnalyseTin(AnalysisAlgorithm):
                 is_marked=points.is_marked[inside],
             )
 
-        tin = request.computed(triangulate, 0.1, 0.15)
+        tin = request.computed(triangulate, 0.1, 0.25)
         merged = points_merged(name, points.xyz[inside], local[inside])
         return replace(
             terrain_of_mesh(name, tin.mesh, system, frame, unit),

@@ -290,12 +290,9 @@ class _Writer:
         figures: list[ZoomFigures] = []
         offs: list[_Off] = []
         meshes: dict[Tile, TileMesh] = {}
-        for zooms_done, tiles in enumerate(ranges[::-1]):
-            of_zoom = part_of(
-                part_of(self._progress, _SHARE_OF_SOURCE, 1.0),
-                zooms_done / len(ranges),
-                (zooms_done + 1) / len(ranges),
-            )
+        ends = _ends_of_zooms(len(ranges))
+        for begin, end, tiles in zip([_SHARE_OF_SOURCE, *ends], ends, ranges[::-1], strict=False):
+            of_zoom = part_of(self._progress, begin, end)
             n_done, n_all = 0, source.n_points + len(tiles)
             made: dict[Tile, TileMesh] = {}
             drawn: dict[Tile, OnTile] = {}
@@ -443,6 +440,19 @@ def _best(
     report(progress, 1.0)
     off_at_all = _Off(worst, max(worst, of_others), n_uncovered + n_others)
     return handed_on, drawn, off_at_all
+
+
+def _ends_of_zooms(n_zooms: int) -> list[float]:
+    """Return at which part of the time each zoom is done, the finest first.
+
+    The finest three take about as long, each coarser one half as long as the one before, since it
+    has half the vertices; on 500 x 500 cells of hills the zooms end at 16, 43, 70, 81 and 88 %
+    (24, 48, 72, 84 and 90 % here).
+    """
+    k = np.arange(n_zooms)
+    weights = np.minimum(1.0, 0.5 ** (k - 2.0)) + 0.01
+    ends = np.cumsum(weights) / weights.sum()
+    return [float(end) for end in _SHARE_OF_SOURCE + (1.0 - _SHARE_OF_SOURCE) * ends]
 
 
 def _part_after(n_tried: float) -> float:
