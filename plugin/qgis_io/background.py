@@ -25,13 +25,14 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 #: Seconds between two looks at the button, and those without news after which the bar creeps on.
-LOOK, SILENCE = 0.1, 0.6
+LOOK, SILENCE = 0.1, 0.8
 #: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): what the clock
 #: adds at a time.
 LEAST = 0.001
-#: How far, of a work's part, the clock may run ahead of what its pace so far lets expect. Then it
+#: How far, of a work's part, the clock may run ahead of what its pace so far lets expect; in narrow
+#: parts so many steps that are seen. Then it
 #: adds `PACE` of what that pace gives, or `TRICKLE` of what is left; before the first word more.
-AHEAD, PACE, TRICKLE, FIRST_TRICKLE = 0.1, 0.5, 0.0004, 0.01
+AHEAD, STEPS_AHEAD, PACE, TRICKLE, FIRST_TRICKLE = 0.1, 8, 0.5, 0.0004, 0.01
 #: Share of what is left that the clock may take before the next word of the work; before the first
 #: word it may take all.
 LEAD = 0.5
@@ -55,6 +56,7 @@ class Bar:
 
     def __init__(self, now: float, width: float = 1.0) -> None:
         self._least = LEAST / max(width, LEAST)
+        self._ahead = max(AHEAD, STEPS_AHEAD * self._least)
         self._shown, self._reported, self._goal = 0.0, 0.0, 1.0
         self._seen, self._moved = 0.0, now
         self._began, self._word = now, now
@@ -87,9 +89,9 @@ class Bar:
         """Return what the clock adds."""
         left = self._goal - self._shown
         if self._word == self._began:
-            return 1.01 * self._least if self._shown < AHEAD else FIRST_TRICKLE * left
+            return 1.01 * self._least if self._shown < self._ahead else FIRST_TRICKLE * left
         pace = self._reported / (self._word - self._began)
-        if self._shown < pace * (now - self._began) + AHEAD:
+        if self._shown < pace * (now - self._began) + self._ahead:
             return 1.01 * self._least
         return max(PACE * pace * (now - self._moved), TRICKLE * left)
 

@@ -103,6 +103,7 @@ def write_bands(
     dtype = bands.values.dtype.newbyteorder("<")
     predictor = 3 if dtype.kind == "f" else 2
     options = ["COMPRESS=DEFLATE", f"PREDICTOR={predictor}", "TILED=YES", "BIGTIFF=IF_SAFER"]
+    options.append("INTERLEAVE=BAND")  # or all would be compressed when the file is closed
     refusal = partial(_unwritten, path)
     with new_file(path, overwrite=True) as scratch, without_exceptions(gdal, refusal):
         driver = gdal.GetDriverByName("GTiff")
@@ -118,6 +119,7 @@ def write_bands(
             band.SetDescription(bands.names[k])
             band.SetNoDataValue(bands.nodata)
             is_written &= _write_strips(band, bands.values[k], feedback)
+            band.FlushCache()
             report(_SHARE_OF_WRITING * (k + 1) / n_bands)
         band = dataset = None  # closes the file
         if not is_written:
