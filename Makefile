@@ -5,8 +5,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest
 # Two workers on two cores take little more than half the time; tests that time nothing allow it.
-# Those that share something costly are a group, for one of them.
-PARALLEL ?= --numprocesses auto --dist loadgroup
+PARALLEL ?= --numprocesses auto
 
 .PHONY: help demo test test-compiled test-plain test-fast test-exhaustive test-qgis test-qgis-numpy2 lint check docs plugin release clean
 

@@ -11,7 +11,6 @@ from wavelet_core.metrics import surface_errors
 pytestmark = [
     pytest.mark.data,
     pytest.mark.large,
-    pytest.mark.xdist_group("real tiles"),  # which share the tiles
     pytest.mark.filterwarnings("ignore::UserWarning"),
 ]
 
