@@ -326,11 +326,11 @@ def _carried_up(
 
 def _vertex_normals(mesh: TriangleMesh) -> FloatArray:
     """Return the normals at the vertices, means of the faces' by area; upward without a face."""
-    corners = mesh.vertices[mesh.faces]
+    corners: FloatArray = mesh.vertices[mesh.faces]
     doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    sums = np.column_stack(
+    sums: FloatArray = np.column_stack(
         [
-            np.bincount(mesh.faces.ravel(), np.repeat(column, 3), minlength=mesh.n_vertices)
+            np.bincount(mesh.faces.ravel(), np.repeat(column, 3), mesh.n_vertices)
             for column in doubled.T
         ]
     )
