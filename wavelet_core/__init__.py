@@ -19,6 +19,7 @@ from .features.landforms import LANDFORMS, landforms
 from .features.scale_maps import (
     ScaleMaps,
     deviation_by_scale,
+    heights_above_means,
     level_at_distance,
     local_means,
     roughness_by_scale,
@@ -106,6 +107,7 @@ __all__ = [
     "finished",
     "fitted",
     "heights_above_lows",
+    "heights_above_means",
     "joined_levels",
     "landforms",
     "level_at_distance",

@@ -67,8 +67,8 @@ class ShapeOfLevel(PyramidAlgorithm):
         return tr(
             "A landform has a size: the slope of a hill is not that of its furrows. This gives "
             "slope, aspect, curvature and landforms of the surface of one level, each as smooth as "
-            "the level, and what the terrain has above and below it. For levels that are of one "
-            "size on the ground analyse with the partition <i>random</i> and the prediction "
+            "the level, and how high places are above their surroundings. For levels that are of "
+            "one size on the ground analyse with the partition <i>random</i> and the prediction "
             "<i>plane</i>."
         )
 
@@ -78,7 +78,8 @@ class ShapeOfLevel(PyramidAlgorithm):
         self.add(
             QgsProcessingParameterNumber("LEVEL", tr("Level"), WHOLE_NUMBER, None, True, 0),
             tr(
-                "0 is the coarsest. Empty for the input itself, and for heights above the coarsest."
+                "0 is the coarsest. Empty for the input itself, and for residual topography the "
+                "coarsest."
             ),
         )
         self.add(
@@ -133,8 +134,8 @@ class ShapeOfLevel(PyramidAlgorithm):
             ),
             (
                 "RESIDUAL",
-                tr("Height above the level"),
-                tr("Residual topography, in the unit of elevation: the input less the level."),
+                tr("Residual topography"),
+                tr("Height above the mean of surroundings of the size of the level."),
                 False,
             ),
         ):

@@ -1690,7 +1690,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>0 is the coarsest. Empty for the input itself, and for heights above the coarsest.</source>
+    <source>0 is the coarsest. Empty for the input itself, and for residual topography the coarsest.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1700,7 +1700,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and what the terrain has above and below it. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1725,7 +1725,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>Height above the level</source>
+    <source>Height above the mean of surroundings of the size of the level.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1765,7 +1765,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>Residual topography, in the unit of elevation: the input less the level.</source>
+    <source>Residual topography</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -1690,8 +1690,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>0 is the coarsest. Empty for the input itself, and for heights above the coarsest.</source>
-    <translation>0 ist die gröbste. Leer für die Eingabe selbst, und für Höhen über der gröbsten.</translation>
+    <source>0 is the coarsest. Empty for the input itself, and for residual topography the coarsest.</source>
+    <translation>0 ist die gröbste. Leer für die Eingabe selbst, und für das Residualrelief die gröbste.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -1700,8 +1700,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and what the terrain has above and below it. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
-    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition, Krümmung und Landformen der Oberfläche einer Stufe, so glatt wie die Stufe, und was das Gelände über und unter ihr hat. Für Stufen, die am Boden von einer Größe sind, mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysieren.</translation>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
+    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition, Krümmung und Landformen der Oberfläche einer Stufe, so glatt wie die Stufe, und wie hoch Orte über ihrer Umgebung liegen. Für Stufen, die am Boden von einer Größe sind, mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysieren.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -1725,8 +1725,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>Height above the level</source>
-    <translation>Höhe über der Stufe</translation>
+    <source>Height above the mean of surroundings of the size of the level.</source>
+    <translation>Höhe über dem Mittel einer Umgebung von der Größe der Stufe.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -1765,8 +1765,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>Residual topography, in the unit of elevation: the input less the level.</source>
-    <translation>Residualrelief, in der Einheit der Höhe: die Eingabe weniger die Stufe.</translation>
+    <source>Residual topography</source>
+    <translation>Residualrelief</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>

@@ -18,6 +18,7 @@ from wavelet_core import (
     TriangleMesh,
     band_components,
     band_energies,
+    heights_above_means,
     level_spacings,
     surface_shape,
     vertex_details,
@@ -96,19 +97,24 @@ def shape_columns(mesh: TriangleMesh) -> FloatArray:
 
 
 def residual_column(geo: GeoPyramid, level: int, progress: Progress | None = None) -> FloatArray:
-    """Return how far every vertex of the input is above a level, ``(n_vertices,)``, in its unit.
+    """Return how far every vertex is above the mean of its surroundings, ``(n_vertices,)``.
 
     Parameters
     ----------
     geo : GeoPyramid
         What is analysed.
     level : int
-        Whose surface is taken away.
+        Whose neighbourhoods the surroundings are.
     progress : callable, optional
-        See `wavelet_core.features.spectrum.band_components`.
+        See `wavelet_core.features.scale_maps.heights_above_means`.
+
+    Returns
+    -------
+    ndarray
+        In the input's unit of z.
     """
-    residual = band_components(geo.pyramid, "z", progress).residual(level)
-    return residual / _file_scale(geo, "z")
+    above = heights_above_means(geo.pyramid, [level], progress)[:, 0]
+    return above / _file_scale(geo, "z")
 
 
 def scale_map_columns(maps: ScaleMaps) -> FloatArray:

@@ -44,8 +44,8 @@ __all__ = ["QUANTITIES", "Details", "LevelDetails", "Quantity", "details"]
 
 #: What may be asked for: root mean square detail around each vertex, a column per level; what each
 #: level adds, signed; the level at which each vertex went; slope, aspect and curvatures of a level;
-#: its landform classes; heights above it; by scale, the angle between the surface and the smooth
-#: one, and heights above their surroundings in standard deviations.
+#: its landform classes; heights above the means of surroundings of its size; by scale, the angle
+#: between the surface and the smooth one, and such heights in standard deviations.
 Quantity = Literal[
     "energy", "component", "level", "shape", "landforms", "residual", "roughness", "deviation"
 ]
@@ -91,7 +91,7 @@ class Details:
     what : str
         See `Quantity`.
     level : int
-        Whose shape or landforms; the one above which heights are.
+        Whose shape or landforms; of whose size the surroundings of residual heights are.
     channel : str or None
         Whose energy or component; None is the geometry.
     flat_slope, flat_curvature : float
@@ -139,7 +139,7 @@ class Details:
             return value_bands(geo, finest, scale_map_columns(maps), names, cell_size)
         if self.what == "residual":
             column = residual_column(geo, self.level, progress)[:, None]
-            name = f"height above level {self.level}"
+            name = f"height above the mean around, level {self.level}"
             return value_bands(geo, geo.pyramid.synthesise(), column, (name,), cell_size)
         mesh = geo.pyramid.mesh(self.level)
         if self.what == "level":
@@ -172,7 +172,7 @@ class Details:
             return shape_layer(geo, self.level, self._classes(shape))
         if self.what == "residual":
             column = residual_column(geo, self.level, progress)[:, None]
-            meaning = f"Height above level {self.level}, in the input's unit of z"
+            meaning = "Height above the mean of the surroundings, in the input's unit of z"
             name = f"residual_level_{self.level:02d}"
             return scale_layer(geo, name, column, ("residual",), meaning)
         if self.what in _BY_SCALE:
@@ -271,8 +271,8 @@ def details(
     what : str
         See `Quantity`.
     level : int, optional
-        Of shape and landforms, by default the input itself; the one above which residual heights
-        are, by default the coarsest.
+        Of shape and landforms, by default the input itself; of whose size the surroundings of
+        residual heights are, by default the coarsest.
     metres : float, optional
         Instead: the level of this spacing on the ground (median edge in plan), or the nearest, in
         metres where the CRS names its unit, else in its own.

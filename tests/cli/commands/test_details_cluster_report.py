@@ -123,15 +123,15 @@ def test_roughness_and_deviation_tell_the_strongest_and_its_spacing(run):
         assert {"vertex_id", "spacing", "level_00"} <= set(values)
 
 
-def test_residual_is_what_the_input_has_above_a_level(run, folder):
-    from wavelet_core.features.spectrum import band_components
+def test_residual_is_the_height_above_the_mean_around(run, folder):
+    from wavelet_core import heights_above_means
     from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
 
-    above = band_components(read_pyramid(folder / "d.gpkg").pyramid).residual(0)
+    above = heights_above_means(read_pyramid(folder / "d.gpkg").pyramid, [0])[:, 0]
     _, path, _ = run("details", "d.gpkg", "r.tif", "--what", "residual")
     with rasterio.open(path) as dataset:
         np.testing.assert_allclose(dataset.read(1).ravel(), above, atol=1e-4)
-        assert dataset.descriptions == ("height above level 0",)
+        assert dataset.descriptions == ("height above the mean around, level 0",)
     _, points, _ = run("details", "d.gpkg", "r.gpkg", "--what", "residual", "--level", "0")
     meta, _, _, columns = pyogrio.raw.read(points, layer="residual_level_00")
     values = dict(zip(meta["fields"], columns, strict=True))

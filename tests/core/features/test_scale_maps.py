@@ -11,6 +11,7 @@ from wavelet_core import (
     analyse,
     band_energies,
     deviation_by_scale,
+    heights_above_means,
     level_at_distance,
     level_spacings,
     local_means,
@@ -63,6 +64,18 @@ def test_how_far_a_hill_stands_out_depends_on_the_distance_in_its_own_widths():
     assert deviation(40, 4.5) == pytest.approx(-deviation(140, 18.0), rel=0.25)
     assert deviation(40, 18.0) > 3 > 2 > -deviation(140, 18.0) > 1.2
     assert -deviation(140, 4.5) < 1.1 < deviation(40, 4.5)
+
+
+def test_on_a_slope_heights_are_above_the_slope():
+    x, y = np.meshgrid(np.arange(80.0), np.arange(80.0))
+    pyramid = analyse(grid(0.3 * x + 0.1 * y), levels=14, **BY_SIZE)
+    above = heights_above_means(pyramid, [0, 7, 14])
+    inner = ((np.abs(x - 39.5) < 20) & (np.abs(y - 39.5) < 20)).ravel()
+    np.testing.assert_allclose(above[inner], 0.0, atol=1e-9)
+    hill = 5 * np.exp(-0.5 * ((x - 40) ** 2 + (y - 40) ** 2) / 9)
+    above = heights_above_means(analyse(grid(0.3 * x + hill), levels=14, **BY_SIZE), [0])
+    assert above[:, 0].argmax() == 40 * 80 + 40
+    assert 4 < above.max() < 5
 
 
 def test_nothing_stands_out_of_a_lake():

@@ -175,7 +175,7 @@ class TestShape:
         layers = opened("shapeoflevel", {"INPUT": str(made / "p.gpkg"), "LEVEL": 2, **outputs})
         classes = layers["Landforms"].renderer().classes()
         assert [entry.label for entry in classes][:3] == ["planar", "pit", "channel"]
-        assert set(layers) == {"Landforms", "Height above the level"}
+        assert set(layers) == {"Landforms", "Residual topography"}
 
     def test_no_output_is_refused(self, refused, made):
         assert "choose a raster" in refused("shapeoflevel", {"INPUT": str(made / "p.gpkg")})

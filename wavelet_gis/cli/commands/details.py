@@ -43,10 +43,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="energy: root mean square detail around each vertex, one raster band per level "
         "(default); component: what each level adds, signed; level: at which each vertex went; "
         "shape: slope, aspect and curvatures of the surface of --level; landforms: its planar "
-        "ground, pits, channels, passes, ridges and peaks (0 to 5); residual: height above "
-        "--level; roughness: degrees between the surface and the smooth one of each scale; "
-        "deviation: standard deviations above the surroundings at each scale; of both first the "
-        "strongest of all scales and the spacing where it is",
+        "ground, pits, channels, passes, ridges and peaks (0 to 5); residual: height above the "
+        "mean of surroundings of the size of --level; roughness: degrees between the surface and "
+        "the smooth one of each scale; deviation: standard deviations above the surroundings at "
+        "each scale; of both first the strongest of all scales and the spacing where it is",
     )
     parser.add_argument(
         "--level",
