@@ -381,6 +381,7 @@ def draw(path, ratios):
     mpl.use("agg")
     import matplotlib.pyplot as plt
     from matplotlib import cbook, colors
+    from PIL import Image
 
     sample = cbook.get_sample_data("jacksboro_fault_dem.npz")
     z, cell = sample["elevation"].astype(float), 83.0
@@ -416,6 +417,7 @@ def draw(path, ratios):
     axes[0, 0].set_ylabel("ours")
     axes[1, 0].set_ylabel("published")
     figure.savefig(path, dpi=100)
+    Image.open(path).convert("RGB").quantize(128).save(path, optimize=True)
 
 
 def main() -> None:
