@@ -1,8 +1,8 @@
 """Maps by scale beside the published ones on the same DEMs: rank correlations, and the picture.
 
-    python benchmarks/quality/feature_maps.py [DATA] [--dems NAME...]
-        [--output benchmarks/quality/feature_maps.json] [--picture docs/images/feature-maps.png]
-    python benchmarks/quality/feature_maps.py --write docs/topics/maps.md
+    python benchmarks/features/maps.py [DATA] [--dems NAME...]
+        [--output benchmarks/features/maps.json] [--picture docs/images/feature-maps.png]
+    python benchmarks/features/maps.py --write docs/topics/maps.md
 
 Theirs are by windows of a number of cells, ours by the spacing of a level. How many spacings a
 window is, is chosen for each map on the first DEM, by the mean over its windows, and kept on the
@@ -24,7 +24,6 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import rasterio
-from denoise import DEMS
 from scipy import ndimage
 from scipy.stats import spearmanr
 
@@ -43,6 +42,13 @@ from wavelet_core import (
 )
 from wavelet_core.features.shape import SurfaceShape, sample_at
 
+#: File, upper and left cell of the window, size of a cell in metres.
+DEMS = (
+    ("lidar_dem_400.tif", 0, 0, 1.0),
+    ("TM1_564_146_1m.tif", 300, 300, 1.0),
+    ("tasmania_33m_f64.tif", 0, 0, 33.3652),
+    ("jacksboro_tn_4326.tif", 0, 0, 83.0),
+)
 #: Side of the windows of DEMs, and of the moving windows, in cells; Whitebox's largest half window.
 SIDE, WINDOWS, LARGEST_HALF = 400, (9, 17, 33), 20
 #: Cells along the outline that are not compared, and levels and number of our pyramids.
@@ -443,7 +449,7 @@ def main() -> None:
     if not which("grass"):
         print("GRASS is left out: there is no program grass.", flush=True)
     results: dict[str, dict] = {}
-    for name, top, left, cell, _ in DEMS:
+    for name, top, left, cell in DEMS:
         if arguments.dems and not any(part in name for part in arguments.dems):
             continue
         with rasterio.open(arguments.data / "dems" / name) as file:
