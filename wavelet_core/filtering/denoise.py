@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._kernels._jit import current_engine
 from .._validate import FloatArray, as_locked
 from ..errors import OptionError
 from ..lifting.analyse import EXPECTED_KEPT, analyse
@@ -24,16 +25,18 @@ from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
 from .noise.rounding import FILL_ROUNDS, ROUNDS_OF_SHARE, without_terraces
 from .noise.stripes import NO_LINE, STEPS_OF_STRIPES, check_lines
 from .noise.white import check_sigma, noise_columns, noise_gains
-from .undecimated import UndecimatedBank
+from .undecimated import UndecimatedBank, n_ticks
 
 #: Scales of the details of all vertices for a level of a pyramid: they reach as far. On crops of
 #: two DEMs half as many leave 0 to 1.3 % more error, and twice as many the same in twice the time.
 SCALES_PER_LEVEL = 0.5
 #: A pyramid for denoising stops where its mesh would be smaller than this.
 LEAST_VERTICES = 100
-#: For the progress: the shares of what goes before the pyramids and of the filters of all vertices,
-#: the time that the details of all vertices take, in pyramids, and that of a pyramid's analysis.
-BEFORE_PYRAMIDS, OF_BANK, TIME_OF_VERTICES, OF_ANALYSIS = 0.05, 0.08, 1.5, 0.85
+#: For the progress: the share of what goes before the pyramids; that of the analysis in a pyramid;
+#: the time that the details of all vertices take, in pyramids of the engine, and the share in it of
+#: making their filters.
+BEFORE_PYRAMIDS, OF_ANALYSIS, OF_BANK = 0.03, 0.85, 0.37
+TIME_OF_VERTICES = {"compiled": 2.4, "arrays": 0.4, "loops": 2.4}
 
 
 def denoise(
@@ -227,7 +230,8 @@ class _Decompositions:
 
     def run(self, weighted: Sequence[WeightedSum]) -> None:
         """Fit the weights of every column and sum."""
-        span = (1.0 - BEFORE_PYRAMIDS - OF_BANK) / (self._n_pyramids + TIME_OF_VERTICES)
+        of_vertices = TIME_OF_VERTICES[current_engine()]
+        span = (1.0 - BEFORE_PYRAMIDS) / (self._n_pyramids + of_vertices)
         for k in range(self._n_pyramids):
             start, stop = BEFORE_PYRAMIDS + k * span, BEFORE_PYRAMIDS + (k + 1) * span
             self._meter.begin(start, start + OF_ANALYSIS * span, 1)
@@ -236,7 +240,7 @@ class _Decompositions:
             self._meter.begin(start + OF_ANALYSIS * span, stop, n_steps)
             self._take_in(Transform.from_pyramid(pyramid, self._meter.tick), weighted)
             del pyramid
-        self._finish(weighted, 1.0 - OF_BANK - TIME_OF_VERTICES * span)
+        self._finish(weighted, 1.0 - of_vertices * span)
 
     def _take_in(self, transform: Transform, weighted: Sequence[WeightedSum]) -> None:
         """Fit one pyramid to every column."""
@@ -246,8 +250,9 @@ class _Decompositions:
     def _finish(self, weighted: Sequence[WeightedSum], start: float) -> None:
         """Take in the details of all vertices."""
         n, meter = self._mesh.n_vertices, self._meter
-        meter.begin(start, start + OF_BANK, 150 + n // 25_000)
         n_scales = max(round(SCALES_PER_LEVEL * self._levels), 1)
+        middle = start + OF_BANK * (1.0 - start)
+        meter.begin(start, middle, n_ticks(n, n_scales))
         plain = UndecimatedBank.from_mesh(
             self._mesh, n_scales, noise_columns(n, self._seed), self._locked, meter.tick
         )
@@ -257,7 +262,7 @@ class _Decompositions:
         n_times, n_blocks = 1 if n == n_fitted else 2, n_fitted // ROWS_AT_ONCE
         n_steps = len(weighted) * (n_times * rounds + n_blocks)
         n_steps += sum(FILL_ROUNDS + ROUNDS_OF_SHARE for w in weighted if w.noise.rounding.step > 0)
-        meter.begin(start + OF_BANK, 0.99, n_steps)
+        meter.begin(middle, 0.999, n_steps)
         for one in weighted:
             bank = plain
             if not one.noise.is_plain:
