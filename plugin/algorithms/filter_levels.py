@@ -178,7 +178,7 @@ class FilterLevels(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterNumber(
-                "PYRAMIDS", tr("Number of pyramids averaged"), WHOLE_NUMBER, 8, minValue=0
+                "PYRAMIDS", tr("Number of pyramids averaged"), WHOLE_NUMBER, 4, minValue=0
             ),
             tr(
                 "Pyramids in random order, each denoised, whose average leaves no traces of "
