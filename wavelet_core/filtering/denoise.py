@@ -16,7 +16,7 @@ from ..lifting.linear_map import Transform
 from ..lifting.pyramid import Pyramid
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Meter, Progress, report
-from . import _weighted_sum
+from . import _guided, _weighted_sum
 from ._bounded import ROWS_AT_ONCE
 from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
@@ -38,8 +38,8 @@ LEAST_VERTICES = 100
 #: For the progress: the share of what goes before the pyramids; that of the analysis in a pyramid;
 #: the time that the details of all vertices take, in pyramids of the engine, and the share in it of
 #: making their filters.
-BEFORE_PYRAMIDS, OF_ANALYSIS, OF_BANK = 0.03, 0.85, 0.37
-TIME_OF_VERTICES = {"compiled": 2.4, "arrays": 0.4, "loops": 2.4}
+BEFORE_PYRAMIDS, OF_ANALYSIS, OF_BANK = 0.03, 0.85, 0.25
+TIME_OF_VERTICES = {"compiled": 3.2, "arrays": 0.7, "loops": 3.2}
 
 
 def denoise(
@@ -126,7 +126,9 @@ def denoise(
     estimate holds for normal noise: with a covariance C that is not white, :math:`\sigma^2
     \operatorname{div} F` gives way to :math:`\operatorname{tr}(C\, \partial F)`, probed by columns
     of such noise. M is taken from the average of all pyramids, which is what makes the weights fit
-    the average rather than a single one.
+    the average rather than a single one. From 10,000 vertices on, averages that keep the edges of
+    this sum are then added to it likewise (`wavelet_core.filtering._guided.edge_kept`), but not
+    where values were rounded.
 
     References
     ----------
@@ -261,16 +263,15 @@ class _Decompositions:
         )
         rounds = sum(VERTEX_ROUNDS + k for k in range(plain.n_scales)) * plain.n_parts
         rounds += 2 ** (plain.n_scales - 1)
-        n_fitted = min(n, _weighted_sum.MAX_FITTED)
-        n_times, n_blocks = 1 if n == n_fitted else 2, n_fitted // ROWS_AT_ONCE
-        n_steps = len(weighted) * (n_times * rounds + n_blocks)
+        n_blocks = min(n, _weighted_sum.MAX_FITTED) // ROWS_AT_ONCE
+        n_steps = len(weighted) * (2 * rounds + n_blocks + _guided.n_ticks(n))
         n_steps += sum(FILL_ROUNDS + ROUNDS_OF_SHARE for w in weighted if w.noise.rounding.step > 0)
         meter.begin(middle, 0.999, n_steps)
         for one in weighted:
             bank = plain
             if not one.noise.is_plain:
                 bank = plain.for_noise(one.noise.columns(n, self._seed))
-            one.finish(bank)
+            one.finish(bank, self._locked)
             if one.noise.rounding.step > 0:
                 self._fill_terraces(bank, one)
 
