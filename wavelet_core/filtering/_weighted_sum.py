@@ -76,6 +76,10 @@ MOST_PROBES = 8
 #: Ridge of the weights, relative to the mean energy of a column: it pulls towards no change.
 #: A hundredth of it and a hundred times as much give the same error to four digits.
 RIDGE = 1e-7
+#: How much of what keeps edges is taken where the noise differs by place, of which the estimates are
+#: rough. All of it leaves 7 % less error on a cloud and up to 4 % more on DEMs; half 6 % less and up
+#: to 1.5 % more, on twelve windows.
+SHARE_BY_PLACE = 0.5
 #: Columns smaller than this part of the values are rounding.
 ROUNDING = 1e-13
 
@@ -160,7 +164,7 @@ class WeightedSum:
         del self._of_pyramids, self._changes_of_pyramids
         for probe, change in zip(self._guiding.T, changes, strict=True):  # one, or none
             relative = np.ones(1) if self.noise.relative is None else self.noise.relative
-            column = edge_kept(
+            kept = edge_kept(
                 Rings(bank.averaging.indptr, bank.averaging.indices),
                 Moved(self._values, probe),
                 Moved(column, change),
@@ -168,6 +172,7 @@ class WeightedSum:
                 is_fixed,
                 bank.tick,
             )
+            column += (1.0 if self.noise.relative is None else SHARE_BY_PLACE) * (kept - column)
         self.result += column - self._values
 
     def _summed(self, bank: UndecimatedBank) -> tuple[FloatArray, FloatArray]:
