@@ -76,9 +76,9 @@ MOST_PROBES = 8
 #: Ridge of the weights, relative to the mean energy of a column: it pulls towards no change.
 #: A hundredth of it and a hundred times as much give the same error to four digits.
 RIDGE = 1e-7
-#: How much of what keeps edges is taken where the noise differs by place, of which the estimates are
-#: rough. All of it leaves 7 % less error on a cloud and up to 4 % more on DEMs; half 6 % less and up
-#: to 1.5 % more, on twelve windows.
+#: How much of what keeps edges is taken where the noise differs by place, of which the estimates
+#: are rough. All of it leaves 7 % less error on a cloud and up to 4 % more on DEMs, half 6 % less
+#: and up to 1.5 % more, on twelve windows.
 SHARE_BY_PLACE = 0.5
 #: Columns smaller than this part of the values are rounding.
 ROUNDING = 1e-13
