@@ -9,6 +9,7 @@ import pytest
 from helpers_meshes import grid_with_holes, tube
 
 from wavelet_core import TriangleMesh, analyse
+from wavelet_core.lifting.signal import Normalisation, height_weights
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.partition.orderings import LevelView, _label
 
@@ -283,3 +284,17 @@ def test_link_two_apexes_of_a_bipyramid_do_not_both_go():
     lower = [(1, 3, 2), (1, 4, 3), (1, 2, 4)]
     mesh = TriangleMesh(vertices, upper + lower)
     assert collapses(mesh, [0, 1], "xyz").keys() == {0}
+
+
+def test_columns_count_by_their_range_and_weight():
+    """Ranges of 10, 20, 5 and of an attribute 4, which counts for three times as much."""
+    vertices = [[0.0, 0.0, 1.0], [10.0, 0.0, 6.0], [0.0, 20.0, 1.0]]
+    mesh = TriangleMesh(vertices, [[0, 1, 2]], [[2.0], [2.0], [6.0]], ["a"])
+    normal = Normalisation(mesh, [3.0])
+    points, plan = normal.points(np.column_stack([mesh.vertices, mesh.attributes]), None)
+    assert plan.tolist() == [[-5.0, -10.0], [5.0, -10.0], [-5.0, 10.0]]
+    assert points.tolist() == [
+        [-0.5, -0.5, -0.5, -1.5], [0.5, -0.5, 0.5, -1.5], [-0.5, 0.5, -0.5, 1.5],
+    ]  # fmt: skip
+    assert normal.height_weights().tolist() == [1.0, 3.75]  # an error of 4 as one of z of 15
+    assert height_weights(np.array([0.0, 4.0]), [3.0]).tolist() == [1.0, 0.75]

@@ -18,6 +18,7 @@ from wavelet_gis.io.pyramid.codecs import array_codec
 from wavelet_gis.io.pyramid.codecs.array_codec import (
     ArrayHeader,
     Tally,
+    closest_header,
     decode_array,
     encode_array,
     header_of,
@@ -171,6 +172,16 @@ def test_what_is_packed_as_the_format_says_is_read(name, dtype):
     chunks = [packed_by_hand(array[:4], name), packed_by_hand(array[4:], name)]
     back = decode_array(declared, chunks, sum(map(len, chunks)))
     assert back.tobytes() == array.tobytes()
+
+
+def test_the_filter_is_chosen_by_the_rows_in_the_middle(monkeypatch):
+    monkeypatch.setattr(array_codec, "_SAMPLE_ROWS", 1000)
+    noise = np.random.default_rng(0).integers(0, 2**62, 1000)
+    ramp = np.arange(1000) ** 2 * 10**6
+    assert closest_header(np.concatenate([noise, ramp, noise])).filter == "delta2_lzma"
+    assert closest_header(ramp).filter == "delta2_lzma"
+    assert closest_header(np.concatenate([ramp, noise, ramp])).filter != "delta2_lzma"
+    assert work_of(ramp) == ramp.nbytes * (1 + len(array_codec.FILTERS))
 
 
 def test_a_bomb_is_not_expanded(monkeypatch):
