@@ -300,11 +300,12 @@ def test_columns_count_by_their_range_and_weight():
     assert height_weights(np.array([0.0, 4.0]), [3.0]).tolist() == [1.0, 0.75]
 
 
-def test_where_all_three_corners_are_locked_the_free_ring_takes_the_update():
+@pytest.mark.parametrize("partition", ["surface", "colouring"])
+def test_where_all_three_corners_are_locked_the_free_ring_takes_the_update(partition):
     """Else the detail would reach nobody, and the mean of the level would change."""
     mesh = random_delaunay(300, seed=6)
     locked = np.random.default_rng(1).random(mesh.n_vertices) < 0.6
-    pyramid = analyse(mesh, levels=1, locked=locked)
+    pyramid = analyse(mesh, levels=1, locked=locked, partition=partition, prediction="barycentric")
     step, ids = pyramid.steps[0], pyramid.vertex_ids(0)
     faces, prediction = pyramid.mesh(1).faces, pyramid.filters(0).prediction
     n_stuck = 0
