@@ -28,16 +28,18 @@ GROUPS = {
     "lifting": (
         ("wavelet_core/lifting/*.py", "wavelet_core/_arrays/prediction.py",
          "wavelet_core/_arrays/update.py"),
-        tuple(
-            f"tests/core/lifting/test_{name}.py"
-            for name in ("hand_worked", "options", "analytic", "pyramid")
-        ),
+        ("tests/core/lifting/test_hand_worked.py", "tests/core/lifting/test_options.py",
+         "tests/core/lifting/test_analytic.py", "tests/core/features/test_spectrum.py",
+         "tests/core/filtering/test_gains_and_thresholds.py", "tests/core/lifting/test_pyramid.py",
+         "tests/core/lifting/test_recorded.py"),
     ),
     "collapse": (
         ("wavelet_core/mesh/collapse.py", "wavelet_core/partition/*.py",
          "wavelet_core/_arrays/partition.py"),
         ("tests/core/lifting/test_hand_worked.py", "tests/core/partition/test_collapse_costs.py",
-         "tests/core/partition/test_plan_record.py", "tests/core/lifting/test_pyramid.py"),
+         "tests/core/partition/test_plan_record.py", "tests/core/lifting/test_pyramid.py",
+         "tests/core/lifting/test_begun.py", "tests/core/lifting/test_recorded.py",
+         "tests/core/partition/test_error_guided.py", "tests/core/engines/test_engines.py"),
     ),
     "codecs": (
         ("wavelet_gis/io/pyramid/codecs/*.py",),

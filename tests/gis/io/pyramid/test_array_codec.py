@@ -174,6 +174,19 @@ def test_what_is_packed_as_the_format_says_is_read(name, dtype):
     assert back.tobytes() == array.tobytes()
 
 
+@pytest.mark.parametrize("name", ["lzma", "delta2_lzma"])
+def test_a_chunk_that_ends_too_early_is_refused(name):
+    chunk = packed_by_hand(np.arange(4, dtype="<f8"), name)
+    for broken in (chunk[:-1], chunk[: len(chunk) // 2], b"", chunk + b"more"):
+        with pytest.raises(PyramidError, match="damaged"):
+            decode_array(ArrayHeader.checked("<f8", [4], name, 4), [broken], len(chunk))
+
+
+def test_no_rows_need_no_choice():
+    empty = np.zeros((0, 3))
+    assert closest_header(empty) == header_of(empty)
+
+
 def test_the_filter_is_chosen_by_the_rows_in_the_middle(monkeypatch):
     monkeypatch.setattr(array_codec, "_SAMPLE_ROWS", 1000)
     noise = np.random.default_rng(0).integers(0, 2**62, 1000)

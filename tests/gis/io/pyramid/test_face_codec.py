@@ -54,6 +54,11 @@ def test_any_one_face_may_be_missing():
         assert np.array_equal(decode_faces(points, encode_faces(points, fewer)), fewer)
 
 
+def test_points_without_any_face_come_back():
+    points, none = scattered(40), np.empty((0, 3), dtype=np.int64)
+    assert decode_faces(points, encode_faces(points, none)).shape == (0, 3)
+
+
 def test_a_triangulation_that_is_not_delaunay_comes_back():
     points = scattered()
     squeezed = points * np.array([1, 7])

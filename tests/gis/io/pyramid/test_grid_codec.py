@@ -85,6 +85,15 @@ def test_smooth_terrain_has_small_residuals():
     assert residuals.numbers.astype(float).mean() / 2 < along_rows
 
 
+def test_of_a_large_raster_one_order_alone_is_tried(monkeypatch):
+    values = np.rint(hills(40, 40) * 20).astype(np.int64)
+    valid = np.ones(values.shape, dtype=bool)
+    monkeypatch.setattr("wavelet_gis.io.pyramid.codecs.grid_codec.MOST_TRIED", 1000)
+    residuals = encode_grid(values.ravel(), valid)
+    assert np.array_equal(decode_grid(residuals, valid), values.ravel())
+    assert len(residuals.classes) == 0
+
+
 @pytest.mark.parametrize(("every", "expected"), [(1, "aad67cac484cb6c0"), (3, "20861d8ec466eba5")])
 def test_residuals_are_what_they_were(every, expected):
     """What writer and reader change alike comes back, and yet reads no file of before."""
