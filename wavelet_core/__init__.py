@@ -15,6 +15,7 @@ from .errors import (
     WaveletError,
     WaveletWarning,
 )
+from .features.ground import ground_points
 from .features.shape import SHAPE_NAMES, DetailShape, SurfaceShape, detail_shape, surface_shape
 from .features.signature import (
     Signature,
@@ -93,6 +94,7 @@ __all__ = [
     "estimate_noise",
     "finished",
     "fitted",
+    "ground_points",
     "heights_above_lows",
     "joined_levels",
     "level_spacings",

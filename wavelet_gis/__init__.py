@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.extract import Surface, extract
     from wavelet_gis.workflows.filtering import Filtered
     from wavelet_gis.workflows.filtering import filter_pyramid as filter
+    from wavelet_gis.workflows.ground import ClassifiedGround, classify_ground
     from wavelet_gis.workflows.learning.cluster import Labelled, classify, cluster
     from wavelet_gis.workflows.learning.labels import labels_from_las, labels_from_layer
     from wavelet_gis.workflows.open import load
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Analysis",
+    "ClassifiedGround",
     "Contours",
     "Details",
     "Difference",
@@ -56,6 +58,7 @@ __all__ = [
     "Tileset",
     "analyse",
     "classify",
+    "classify_ground",
     "cluster",
     "contours",
     "details",
@@ -103,7 +106,9 @@ _HOMES = {
     "mesh_quality": "workflows.read_off.quality:mesh_quality",
     "profile": "workflows.read_off.profile:profile",
     "profile_page": "report.profile_plot:profile_page",
+    "ClassifiedGround": "workflows.ground:ClassifiedGround",
     "classify": "workflows.learning.cluster:classify",
+    "classify_ground": "workflows.ground:classify_ground",
     "cluster": "workflows.learning.cluster:cluster",
     "details": "workflows.details:details",
     "extract": "workflows.extract:extract",
