@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.learning.labels import labels_from_las, labels_from_layer
     from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.open import open_data as open
+    from wavelet_gis.workflows.read_off.change import ChangeByScale, change_by_scale
     from wavelet_gis.workflows.read_off.contours import Contours, contours
     from wavelet_gis.workflows.read_off.difference import Difference, difference
     from wavelet_gis.workflows.read_off.profile import Profile, profile
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Analysis",
+    "ChangeByScale",
     "ClassifiedGround",
     "Contours",
     "Details",
@@ -57,6 +59,7 @@ __all__ = [
     "Tiled",
     "Tileset",
     "analyse",
+    "change_by_scale",
     "classify",
     "classify_ground",
     "cluster",
@@ -97,6 +100,8 @@ _HOMES = {
     "Tiled": "tiles.tile:Tiled",
     "Tileset": "tiles.globe.tileset:Tileset",
     "analyse": "workflows.analyse:analyse",
+    "ChangeByScale": "workflows.read_off.change:ChangeByScale",
+    "change_by_scale": "workflows.read_off.change:change_by_scale",
     "Contours": "workflows.read_off.contours:Contours",
     "Difference": "workflows.read_off.difference:Difference",
     "LevelQuality": "workflows.read_off.quality:LevelQuality",
