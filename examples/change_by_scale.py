@@ -2,8 +2,8 @@
 
 usage: python examples/change_by_scale.py DEM.tif PICTURE.png
 
-A mound of 20 m that is 1 km across and, elsewhere, a field of 3 km with a rough surface of 3 m are
-added to a DEM; `wavelet_gis.change_by_scale` is given the two DEMs only.
+A mound of 20 m that is 24 cells wide at half its height and, elsewhere, a square of 80 cells with a
+rough surface of 3 m are added to a DEM; `wavelet_gis.change_by_scale` is given the two DEMs only.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ matplotlib.use("Agg")
 from matplotlib import pyplot
 from matplotlib.colors import LightSource
 
-MOUND_HEIGHT, MOUND_SIGMA = 20.0, 4.0  # m and cells
-FIELD_ROUGHNESS, FIELD_SIDE = 3.0, 40  # m and cells
+MOUND_HEIGHT, MOUND_SIGMA = 20.0, 10.0  # m and cells
+FIELD_ROUGHNESS, FIELD_SIDE = 3.0, 80  # m and cells
 
 
 def changes(shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
@@ -39,8 +39,13 @@ def changes(shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
     return mound, field
 
 
-def draw(dem: str, picture: str) -> None:
-    """Write the picture, and print how much of each change was found."""
+def rms(values: np.ndarray) -> float:
+    """Return a root mean square."""
+    return float(np.sqrt((values**2).mean()))
+
+
+def draw(dem: str, picture: str) -> dict[str, float]:
+    """Write the picture, print how much of each change was found, and return it."""
     with rasterio.open(dem) as dataset:
         z, profile = dataset.read(1).astype(np.float32), dataset.profile
     mound, field = changes(z.shape)
@@ -57,21 +62,26 @@ def draw(dem: str, picture: str) -> None:
     fine = sum(bands[-2:])
     coarse = sum(bands[:-2])
     is_mound, is_field = mound > 0.05 * MOUND_HEIGHT, field != 0
-    found = float(coarse[is_mound].sum() / mound[is_mound].sum())
-    print(f"coarse bands: {found:.1%} of the mound's volume")
-    print(f"coarse bands: RMS {np.sqrt((coarse[is_field] ** 2).mean()):.2f} m in the field")
-    print(f"fine bands: RMS {np.sqrt((fine[is_field] ** 2).mean()):.2f} m in the field")
-    print(f"fine bands: RMS {np.sqrt((fine[is_mound] ** 2).mean()):.2f} m at the mound")
+    found = {
+        "share of the mound's volume in the coarse bands": coarse[is_mound].sum()
+        / mound[is_mound].sum(),
+        "RMS of the fine bands at the mound": rms(fine[is_mound]),
+        "RMS of the fine bands in the field": rms(fine[is_field]),
+        "RMS of the coarse bands in the field": rms(coarse[is_field]),
+    }
+    for what, value in found.items():
+        print(f"{what}: {value:.3f}")
     rows = [("change", mound + field), ("coarse bands", coarse), ("two finest bands", fine)]
     shade = LightSource(azdeg=315, altdeg=45).hillshade(z, vert_exag=0.02)
-    figure, axes = pyplot.subplots(1, 3, figsize=(11, 4.6), layout="constrained")
+    figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.3), layout="constrained")
     for axis, (title, values) in zip(axes, rows, strict=True):
         axis.imshow(shade, cmap="gray", vmin=-0.4, vmax=1.1)
         image = axis.imshow(values, cmap="RdBu_r", vmin=-8, vmax=8, alpha=0.75)
         axis.set(xticks=[], yticks=[])
         axis.set_title(title, loc="left", fontsize=12)
-    figure.colorbar(image, ax=axes, label="risen, m", shrink=0.8)
+    figure.colorbar(image, ax=axes, label="risen, m")
     figure.savefig(picture, dpi=80)
+    return found
 
 
 if __name__ == "__main__":

@@ -73,6 +73,22 @@ def test_difference(folder, told, tmp_path):
         np.testing.assert_allclose(a.read(1), b.read(1), atol=1e-4)
 
 
+def test_change_since_an_earlier_survey(folder, told, tmp_path):
+    with rasterio.open(folder / "dem.tif") as dataset:
+        z, profile = dataset.read(1), dataset.profile
+    with rasterio.open(tmp_path / "earlier.tif", "w", **profile) as dataset:
+        dataset.write(z - 3, 1)
+    earlier = tmp_path / "earlier.tif"
+    figures = told("difference", folder / "p.gpkg", tmp_path / "c.tif", "--since", earlier)
+    assert figures["rms"] == pytest.approx(3, abs=1e-4)
+    # all of it at the coarsest scale
+    assert [round(band["rms"], 3) for band in figures["bands"]][:2] == [3, 0]
+    with rasterio.open(tmp_path / "c.tif") as raster:
+        assert raster.count == 1 + len(figures["bands"])
+        assert raster.descriptions[0] == "change"
+        np.testing.assert_allclose(raster.read(1), 3, atol=1e-3)
+
+
 def test_info_tells_of_triangles_when_asked(folder, told):
     assert "triangles" not in told("info", folder / "p.gpkg")
     rows = told("info", folder / "p.gpkg", "--triangles")["triangles"]
@@ -87,6 +103,8 @@ def test_info_tells_of_triangles_when_asked(folder, told):
         (["profile", "p.gpkg", "line.gpkg", "out.txt"], ".csv"),
         (["contours", "p.gpkg", "out.shp"], ".gpkg"),
         (["difference", "p.gpkg", "out.tif", "--level", "8"], "no level 8"),
+        (["difference", "p.gpkg", "out.tif", "--level", "0", "--since", "dem.tif"], "--level"),
+        (["difference", "p.gpkg", "out.tif", "--since", "p.gpkg"], "is a pyramid"),
     ],
 )
 def test_refusals_are_one_line_and_write_nothing(folder, capsys, arguments, why, monkeypatch):

@@ -95,7 +95,7 @@ class ChangeByScale:
 
         bands = self.raster(cell_size)
         write_bands(path, bands, self.geo.system.wkt)
-        return {"bands": list(bands.names), "shape": list(bands.geometry.shape)}
+        return {"band_names": list(bands.names), "shape": list(bands.geometry.shape)}
 
     def figures(self) -> dict[str, Any]:
         """Return the change of all and of each band, as JSON-able values."""
