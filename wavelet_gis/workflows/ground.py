@@ -25,7 +25,6 @@ from wavelet_gis.model.attributes.ground import GROUND_CLASS
 from wavelet_gis.model.points.cloud import PointCloud, cloud_bounds
 from wavelet_gis.model.terrain import Terrain, frame_of_bounds, require_plan
 from wavelet_gis.workflows.learning.labels import NOT_KNOWN, with_classes
-from wavelet_gis.workflows.opening.raster_or_cloud import open_points
 
 __all__ = ["UNCLASSIFIED", "ClassifiedGround", "classify_ground", "ground_of_cloud"]
 
@@ -129,6 +128,8 @@ def classify_ground(
         return _classified(
             data.name, data.original, data.frame, data.system.working_unit, options, progress
         )
+    from wavelet_gis.workflows.opening.raster_or_cloud import open_points
+
     read = open_points(data, crs=crs, vertical_unit=vertical_unit)
     return ground_of_cloud(
         read.name,
