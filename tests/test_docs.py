@@ -64,6 +64,7 @@ OF_OTHERS = {
     "--moves",
     "--no-deps",
     "--only",
+    "--output",
     "--page",
     "--peers",
     "--picture",

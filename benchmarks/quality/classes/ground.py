@@ -1,6 +1,7 @@
 """Ground filters against reference classes: type I, type II and total error, by survey.
 
 Usage: python benchmarks/quality/classes/ground.py [--data FOLDER] [--output FILE] [--only NAME]
+       python benchmarks/quality/classes/ground.py [--data FOLDER] --picture FILE
 
 Ten surveys with reference classes, seven countries. Each filter runs at four or five settings; the
 setting by which it is judged on one survey is the one with the least mean total error on the nine
@@ -278,14 +279,54 @@ def as_markdown(results: dict) -> str:
     return "\n".join(lines)
 
 
+#: Surveys in the picture.
+SHOWN = ("Brittany, country, 0.3/m²", "Delft, town, 15/m²", "Afghanistan, mountain, 1/m²")
+
+
+def draw(path: Path, clouds: dict[str, Cloud]) -> None:
+    """Draw where our defaults are right and wrong."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    kinds = (
+        ("ground, found", "#d6d3d1"),
+        ("other, found", "#86a789"),
+        ("ground, refused (type I)", "#dc2626"),
+        ("other, accepted (type II)", "#1d4ed8"),
+    )
+    figure, axes = pyplot.subplots(1, len(SHOWN), figsize=(11, 4.2), layout="constrained")
+    for axis, name in zip(axes, SHOWN, strict=True):
+        cloud = clouds[name]
+        found, truth = ground_points(cloud.points), cloud.is_ground
+        for (label, colour), mask in zip(
+            kinds, (found & truth, ~found & ~truth, ~found & truth, found & ~truth), strict=True
+        ):
+            x, y, _ = cloud.points[mask & cloud.is_judged].T
+            axis.plot(x, y, ",", color=colour, label=label, rasterized=True)
+        axis.set(aspect="equal", xticks=[], yticks=[])
+        axis.set_title(name, loc="left", fontsize=11)
+    handles = [
+        pyplot.Line2D([], [], marker="s", linestyle="", color=colour, label=label)
+        for label, colour in kinds
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
+    figure.savefig(path, dpi=80)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     here = Path(__file__).resolve().parents[3]
     parser.add_argument("--data", type=Path, default=here.parent / "shared" / "data")
     parser.add_argument("--output", type=Path, help="read first, where it exists")
     parser.add_argument("--only", choices=tuple(FILTERS), help="run one filter, keep the others")
+    parser.add_argument("--picture", type=Path, help="draw where ours is right, and end")
     arguments = parser.parse_args()
     clouds = {name: read(arguments.data, *what) for name, what in SURVEYS.items()}
+    if arguments.picture:
+        draw(arguments.picture, clouds)
+        return
     results: dict = {}
     if arguments.output and arguments.output.exists():
         results = json.loads(arguments.output.read_text(encoding="utf-8"))
