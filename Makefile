@@ -25,6 +25,10 @@ help:
 	@echo "make release    wheel, source, plugin, manual page and completions in dist/, once all is ready"
 	@echo "make clean      remove what the above made, except $(VENV)"
 
+# The environment alone: enough for what needs pip and nothing of ours.
+$(BIN)/python:
+	@bash scripts/setup-venv.sh $(VENV) $(PYTHON)
+
 # A stamp for each set of packages, so that a second run starts at once.
 $(BIN)/.installed-%: pyproject.toml scripts/setup-venv.sh
 	@bash scripts/setup-venv.sh $(VENV) $(PYTHON) $*
@@ -69,8 +73,8 @@ docs: $(BIN)/.installed-docs
 	$(BIN)/python -m sphinx --fail-on-warning --keep-going -q -b html docs docs/_build/html
 	@echo docs/_build/html/index.html
 
-plugin:
-	@$(PYTHON) scripts/plugin_zip.py
+plugin: | $(BIN)/python
+	@$(BIN)/python scripts/plugin_zip.py
 
 check: lint test test-exhaustive docs
 

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Make a virtual environment and install this project and its extras into it.
-# usage: setup-venv.sh VENV PYTHON EXTRAS      (for example: setup-venv.sh .venv python3 demo,dev)
+# usage: setup-venv.sh VENV PYTHON [EXTRAS]    (for example: setup-venv.sh .venv python3 demo,dev)
+# Without EXTRAS the environment is made and stays empty.
 set -euo pipefail
 
-venv=$1 python=$2 extras=$3
+venv=$1 python=$2 extras=${3:-}
 
 refuse() { printf 'setup: %s\n' "$*" >&2; exit 1; }
 
@@ -25,5 +26,6 @@ if [ ! -x "$venv/bin/python" ]; then
     "$python" -m venv "$venv"
 fi
 
+[ -n "$extras" ] || exit 0
 printf 'setup: installing terrain-wavelets[%s] (a few minutes the first time)\n' "$extras" >&2
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --editable ".[$extras]"

@@ -132,6 +132,40 @@ def test_commands_of_how_to_pages_run(page, tmp_path, monkeypatch, capsys):
         assert code == 0, (words, capsys.readouterr().err)
 
 
+def test_the_first_minutes_run_in_the_shell_and_in_python(tmp_path, monkeypatch, capsys):
+    """The two ways make the same TIN."""
+    page = "docs/start/first-minutes.md"
+    monkeypatch.chdir(tmp_path)
+    write_tif(tmp_path / "dem.tif", hills(80, 90))
+    (words,) = command_lines(page)
+    assert main(words) == 0, capsys.readouterr().err
+    said = capsys.readouterr().out
+    (tmp_path / "coarse.gpkg").rename(tmp_path / "shell.gpkg")
+    (block,) = blocks("python", page)
+    exec(compile(block, page, "exec"), {})
+    printed = capsys.readouterr().out.split()
+    assert printed[0] == "5000"
+    assert f"RMSE {float(printed[1]):.4g}," in said
+    counts = [
+        pyogrio.read_info(file, layer="level_00_tin")["features"]
+        for file in ("coarse.gpkg", "shell.gpkg")
+    ]
+    assert counts[0] == counts[1] > 5000
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_rows_of_a_table_have_the_cells_of_its_head(page):
+    """A row of measured figures had taken the place of one of the list of algorithms."""
+    n_cells = None
+    for line in (ROOT / page).read_text("utf-8").splitlines():
+        if not line.startswith("|"):
+            n_cells = None
+            continue
+        found = len(re.findall(r"(?<!\\)\|", re.sub(r"`[^`]*`", "", line)))
+        assert n_cells in (None, found), line
+        n_cells = found
+
+
 @pytest.mark.parametrize("page", ["README.md", *PAGES])
 def test_links_lead_to_files_and_headings(page):
     path = ROOT / page
