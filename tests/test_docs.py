@@ -72,6 +72,7 @@ OF_OTHERS = {
     "--read",
     "--real",
     "--system-site-packages",
+    "--table",
     "--tree",
     "--user",
 }
