@@ -97,7 +97,7 @@ def ground_points(
     5. The gaps are filled from coarse levels to fine ones; points near that surface are ground.
 
     On slopes, what is uphill hides a part of what stands there: a house of two storeys may stay
-    where the ground rises by more than about 1 : 3.
+    where the ground rises by more than about 1 : 4.
 
     Examples
     --------
