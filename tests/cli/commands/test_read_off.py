@@ -76,17 +76,22 @@ def test_difference(folder, told, tmp_path):
 def test_change_since_an_earlier_survey(folder, told, tmp_path):
     with rasterio.open(folder / "dem.tif") as dataset:
         z, profile = dataset.read(1), dataset.profile
+    earlier = (0.9 * z - 3).astype(z.dtype)
     with rasterio.open(tmp_path / "earlier.tif", "w", **profile) as dataset:
-        dataset.write(z - 3, 1)
-    earlier = tmp_path / "earlier.tif"
-    figures = told("difference", folder / "p.gpkg", tmp_path / "c.tif", "--since", earlier)
-    assert figures["rms"] == pytest.approx(3, abs=1e-4)
-    # all of it at the coarsest scale
-    assert [round(band["rms"], 3) for band in figures["bands"]][:2] == [3, 0]
+        dataset.write(earlier, 1)
+    figures = told(
+        "difference", folder / "p.gpkg", tmp_path / "c.tif", "--since", tmp_path / "earlier.tif"
+    )
     with rasterio.open(tmp_path / "c.tif") as raster:
-        assert raster.count == 1 + len(figures["bands"])
-        assert raster.descriptions[0] == "change"
-        np.testing.assert_allclose(raster.read(1), 3, atol=1e-3)
+        change, *bands = raster.read().astype(float)
+        assert raster.descriptions == tuple(figures["band_names"])
+    assert len(bands) == len(figures["bands"]) >= 2
+    np.testing.assert_allclose(change, z.astype(float) - earlier, atol=1e-3)
+    np.testing.assert_allclose(np.sum(bands, axis=0), change, atol=1e-3)
+    for told_of, values in zip([figures, *figures["bands"]], [change, *bands], strict=True):
+        assert told_of["rms"] == pytest.approx(np.sqrt((values**2).mean()), abs=1e-4) != 0
+        assert told_of["lowest"] == pytest.approx(values.min(), abs=1e-4)
+        assert told_of["highest"] == pytest.approx(values.max(), abs=1e-4)
 
 
 def test_info_tells_of_triangles_when_asked(folder, told):
