@@ -15,6 +15,15 @@ from .errors import (
     WaveletError,
     WaveletWarning,
 )
+from .features.landforms import LANDFORMS, landforms
+from .features.scale_maps import (
+    ScaleMaps,
+    deviation_by_scale,
+    heights_above_means,
+    level_at_distance,
+    local_means,
+    roughness_by_scale,
+)
 from .features.shape import SHAPE_NAMES, DetailShape, SurfaceShape, detail_shape, surface_shape
 from .features.signature import (
     Signature,
@@ -23,6 +32,7 @@ from .features.signature import (
     plain_features,
     scale_features,
 )
+from .features.spectral_slope import spectral_slope
 from .features.spectrum import (
     STAYS,
     Components,
@@ -51,6 +61,7 @@ from .refinement.refine import Refinement, Round, refine
 
 __all__ = [
     "COSTS",
+    "LANDFORMS",
     "NORMS",
     "PARTITIONS",
     "PREDICTIONS",
@@ -73,6 +84,7 @@ __all__ = [
     "PyramidError",
     "Refinement",
     "Round",
+    "ScaleMaps",
     "Signature",
     "SlowFallbackWarning",
     "Step",
@@ -89,20 +101,27 @@ __all__ = [
     "channel_noise",
     "denoise",
     "detail_shape",
+    "deviation_by_scale",
     "energy_signature",
     "estimate_noise",
     "finished",
     "fitted",
     "heights_above_lows",
+    "heights_above_means",
     "joined_levels",
+    "landforms",
+    "level_at_distance",
     "level_spacings",
+    "local_means",
     "mesh_of_accuracy",
     "mesh_of_size",
     "metrics",
     "plain_features",
     "refine",
     "relifted",
+    "roughness_by_scale",
     "scale_features",
+    "spectral_slope",
     "surface_shape",
     "synthetic",
     "vertex_details",

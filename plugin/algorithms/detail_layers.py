@@ -22,6 +22,15 @@ from ._pyramid_input import PyramidAlgorithm
 
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
+    from wavelet_gis.workflows.details import Quantity
+
+
+#: What each raster shows.
+RASTERS: dict[str, Quantity] = {
+    "ENERGY": "energy",
+    "ROUGHNESS": "roughness",
+    "DEVIATION": "deviation",
+}
 
 
 class DetailLayers(PyramidAlgorithm):
@@ -98,6 +107,26 @@ class DetailLayers(PyramidAlgorithm):
                 "place, in the unit of elevation. It maps at which scale the terrain is rough."
             ),
         )
+        self.add(
+            QgsProcessingParameterRasterDestination(
+                "ROUGHNESS", tr("Roughness by scale"), optional=True, createByDefault=False
+            ),
+            tr(
+                "Degrees between the surface and the smooth one of a scale, averaged over its "
+                "neighbourhoods. The first band is the largest of all scales, the second the "
+                "distance on the ground at which it is found; then a band for each scale."
+            ),
+        )
+        self.add(
+            QgsProcessingParameterRasterDestination(
+                "DEVIATION", tr("Deviation by scale"), optional=True, createByDefault=False
+            ),
+            tr(
+                "Height above the surroundings in their standard deviations: above 0 on ridges, "
+                "below in valleys. The first band is the strongest of all scales, the second the "
+                "distance on the ground at which it is found; then a band for each scale."
+            ),
+        )
         add_cell_size_parameter(
             self,
             tr(
@@ -153,8 +182,10 @@ class DetailLayers(PyramidAlgorithm):
             largest = max(largest, float(magnitude.max(initial=0.0)))
         request.finish("OUTPUT", destination, styles.style_details)
         results = {"OUTPUT": destination, "N_DETAILS": n_details, "MAX_MAGNITUDE": largest}
-        if request.wants("ENERGY"):
-            results["ENERGY"] = _write_energy(request, geo)
+        wanted = [name for name in RASTERS if request.wants(name)]
+        for k, name in enumerate(wanted):
+            share = 0.4 / len(wanted)
+            results[name] = _write_raster(request, geo, name, 0.6 + k * share, share)
         return results
 
 
@@ -175,18 +206,24 @@ def _levels(request: Request, geo: GeoPyramid) -> tuple[int, int]:
     return first, last
 
 
-def _write_energy(request: Request, geo: GeoPyramid) -> str:
+def _write_raster(request: Request, geo: GeoPyramid, name: str, start: float, share: float) -> str:
+    """Write one of ``RASTERS``; return where it is."""
     from wavelet_gis.workflows.details import details
 
     from ..qgis_io.raster_writer import write_bands
     from ..ui import layer_styles as styles
 
-    path = request.output_layer("ENERGY")
-    request.stage(tr("Gathering the energy of each level"))
-    cell_size = request.size("CELL_SIZE")
-    bands = request.computed(
-        lambda work: details(geo, what="energy").raster(cell_size, work.progress), 0.6, 0.9
-    )
-    write_bands(path, bands, crs_of(geo), request.feedback, request.progress(0.9, 1.0))
-    request.finish("ENERGY", path, styles.style_energy)
+    path = request.output_layer(name)
+    request.stage(tr("Gathering the scales"))
+    cell_size, middle = request.size("CELL_SIZE"), start + 0.75 * share
+    found = details(geo, what=RASTERS[name])
+    bands = request.computed(lambda work: found.raster(cell_size, work.progress), start, middle)
+    report = request.progress(middle, start + share)
+    write_bands(path, bands, crs_of(geo), request.feedback, report)
+    by_name = {
+        "ENERGY": styles.style_energy,
+        "ROUGHNESS": styles.style_magnitude,
+        "DEVIATION": styles.style_difference,
+    }
+    request.finish(name, path, by_name[name])
     return path

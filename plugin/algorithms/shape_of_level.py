@@ -1,9 +1,10 @@
-"""Slope, aspect and curvatures of a level of a pyramid, as rasters."""
+"""Slope, aspect, curvatures and landforms of a level of a pyramid, and heights above it."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from qgis.core import QgsProcessingParameterNumber, QgsProcessingParameterRasterDestination
 
@@ -11,13 +12,15 @@ from ..base import Values
 from ..parameters.pyramid import checked_level, crs_of
 from ..parameters.request import Request
 from ..parameters.surface_output import add_cell_size_parameter
-from ..ui.enums import WHOLE_NUMBER
+from ..ui.enums import REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
 
 if TYPE_CHECKING:
+    from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.products.vertex_raster import Bands
+    from wavelet_gis.workflows.details import Details, Quantity
 
     from ..qgis_io.background import Work
 
@@ -29,6 +32,8 @@ BANDS = {
     "TANGENTIAL_CURVATURE": "tangential",
     "MEAN_CURVATURE": "mean",
 }
+#: What each of the other outputs is.
+OTHERS: dict[str, Quantity] = {"LANDFORMS": "landforms", "RESIDUAL": "residual"}
 
 
 class ShapeOfLevel(PyramidAlgorithm):
@@ -53,6 +58,7 @@ class ShapeOfLevel(PyramidAlgorithm):
         """Return the words under which the toolbox finds it."""
         return tr(
             "slope,aspect,curvature,profile curvature,plan curvature,tangential,geomorphometry,"
+            "landform,ridge,channel,peak,pit,pass,residual topography,topographic position,"
             "terrain analysis,derivatives,scale,level,pyramid,wavelet"
         ).split(",")
 
@@ -60,7 +66,10 @@ class ShapeOfLevel(PyramidAlgorithm):
         """Return what it does."""
         return tr(
             "A landform has a size: the slope of a hill is not that of its furrows. This gives "
-            "slope, aspect and curvature of the surface of one level, each as smooth as the level."
+            "slope, aspect, curvature and landforms of the surface of one level, each as smooth as "
+            "the level, and how high places are above their surroundings. For levels that are of "
+            "one size on the ground analyse with the partition <i>random</i> and the prediction "
+            "<i>plane</i>."
         )
 
     def declare(self) -> None:
@@ -68,7 +77,19 @@ class ShapeOfLevel(PyramidAlgorithm):
         self.add_pyramid_parameter("LEVEL")
         self.add(
             QgsProcessingParameterNumber("LEVEL", tr("Level"), WHOLE_NUMBER, None, True, 0),
-            tr("0 is the coarsest. Empty for the input itself."),
+            tr(
+                "0 is the coarsest. Empty for the input itself, and for residual topography the "
+                "coarsest."
+            ),
+        )
+        self.add(
+            QgsProcessingParameterNumber(
+                "LEVEL_METRES", tr("Or distance on the ground"), REAL_NUMBER, None, True, 0.0
+            ),
+            tr(
+                "Instead of a level: that whose vertices are so far apart, or the nearest, in "
+                "metres where the CRS states its unit."
+            ),
         )
         add_cell_size_parameter(
             self,
@@ -103,6 +124,20 @@ class ShapeOfLevel(PyramidAlgorithm):
                 tr("Ridges and hilltops are above 0, channels and pits below."),
                 False,
             ),
+            (
+                "LANDFORMS",
+                tr("Landforms"),
+                tr(
+                    "0 planar, 1 pit, 2 channel, 3 pass, 4 ridge, 5 peak, of the size of the level."
+                ),
+                False,
+            ),
+            (
+                "RESIDUAL",
+                tr("Residual topography"),
+                tr("Height above the mean of surroundings of the size of the level."),
+                False,
+            ),
         ):
             self.add(
                 QgsProcessingParameterRasterDestination(
@@ -112,36 +147,57 @@ class ShapeOfLevel(PyramidAlgorithm):
             )
 
     def work(self, request: Request) -> Values:
-        """Measure the shape, write the rasters that were asked for."""
-        from wavelet_gis.products.vertex_raster import Bands
+        """Measure what was asked for, write its rasters."""
         from wavelet_gis.workflows.details import details
 
-        from ..qgis_io.raster_writer import write_bands
-        from ..ui import layer_styles as styles
-
-        wanted = [name for name in BANDS if request.wants(name)]
+        wanted = [name for name in (*BANDS, *OTHERS) if request.wants(name)]
         if not wanted:
             raise QgsProcessingException(tr("No output is chosen; choose a raster."))
         geo = self.geo_pyramid(request)
-        given = request.whole("LEVEL")
-        level = checked_level(geo, geo.pyramid.n_levels if given is None else given)
-        cell_size = request.size("CELL_SIZE")
-        request.stage(tr("Measuring the shape of the surface"))
-
-        def compute(work: Work) -> Bands:
-            found = details(geo, what="shape", level=level)
-            return found.raster(cell_size, work.progress)
-
-        shape = request.computed(compute, 0.05, 0.7)
-        request.figures = {"LEVEL": level}
+        level, metres = request.whole("LEVEL"), request.number("LEVEL_METRES")
+        if level is not None:
+            checked_level(geo, level)
+        kinds: list[Quantity] = list(dict.fromkeys(OTHERS.get(name, "shape") for name in wanted))
         results: Values = {}
-        for k, name in enumerate(wanted):
-            band = shape.names.index(BANDS[name])
-            alone = Bands(shape.values[band : band + 1], (BANDS[name],), shape.geometry)
-            path = request.output_layer(name)
-            start = 0.7 + 0.3 * k / len(wanted)
-            report = request.progress(start, start + 0.3 / len(wanted))
-            write_bands(path, alone, crs_of(geo), request.feedback, report)
-            request.finish(name, path, partial(styles.style_shape, name=BANDS[name]))
-            results[name] = path
+        for k, what in enumerate(kinds):
+            start, stop = 0.05 + 0.95 * k / len(kinds), 0.05 + 0.95 * (k + 1) / len(kinds)
+            middle = start + 0.7 * (stop - start)
+            found = details(geo, what=what, level=level, metres=metres)
+            if what != "residual" or len(kinds) == 1:
+                request.figures = {"LEVEL": found.level}
+            request.stage(tr("Measuring the shape of the surface"))
+            bands = request.computed(
+                partial(_raster, found, request.size("CELL_SIZE")), start, middle
+            )
+            names = [name for name in wanted if OTHERS.get(name, "shape") == what]
+            for n, name in enumerate(names):
+                share = (stop - middle) / len(names)
+                report = request.progress(middle + n * share, middle + (n + 1) * share)
+                results[name] = _write(request, geo, name, bands, report)
         return results
+
+
+def _raster(found: Details, cell_size: float | None, work: Work) -> Bands:
+    return found.raster(cell_size, work.progress)
+
+
+def _write(
+    request: Request, geo: GeoPyramid, name: str, bands: Bands, report: Callable[[float], bool]
+) -> str:
+    """Write one of the rasters; return where it is."""
+    from wavelet_gis.products.vertex_raster import Bands
+
+    from ..qgis_io.raster_writer import write_bands
+    from ..ui import layer_styles as styles
+
+    style: Callable[[Any], None] = styles.style_difference
+    if name == "LANDFORMS":
+        style = styles.style_landforms
+    if name in BANDS:
+        band = bands.names.index(BANDS[name])
+        bands = Bands(bands.values[band : band + 1], (BANDS[name],), bands.geometry)
+        style = partial(styles.style_shape, name=BANDS[name])
+    path = request.output_layer(name)
+    write_bands(path, bands, crs_of(geo), request.feedback, report)
+    request.finish(name, path, style)
+    return path

@@ -800,6 +800,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Degrees between the surface and the smooth one of a scale, averaged over its neighbourhoods. The first band is the largest of all scales, the second the distance on the ground at which it is found; then a band for each scale.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>Detail layers</source>
     <translation type="unfinished"></translation>
   </message>
@@ -820,6 +825,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Deviation by scale</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>Energy by level</source>
     <translation type="unfinished"></translation>
   </message>
@@ -835,7 +845,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
-    <source>Gathering the energy of each level</source>
+    <source>Gathering the scales</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Height above the surroundings in their standard deviations: above 0 on ridges, below in valleys. The first band is the strongest of all scales, the second the distance on the ground at which it is found; then a band for each scale.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -851,6 +866,11 @@
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>Number of points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Roughness by scale</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1670,12 +1690,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>0 is the coarsest. Empty for the input itself.</source>
+    <source>0 is the coarsest. Empty for the input itself, and for residual topography the coarsest.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect and curvature of the surface of one level, each as smooth as the level.</source>
+    <source>0 planar, 1 pit, 2 channel, 3 pass, 4 ridge, 5 peak, of the size of the level.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1700,6 +1725,21 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Height above the mean of surroundings of the size of the level.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Instead of a level: that whose vertices are so far apart, or the nearest, in metres where the CRS states its unit.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Landforms</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Mean curvature</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1715,7 +1755,17 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Or distance on the ground</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Profile curvature</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Residual topography</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1750,7 +1800,7 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>slope,aspect,curvature,profile curvature,plan curvature,tangential,geomorphometry,terrain analysis,derivatives,scale,level,pyramid,wavelet</source>
+    <source>slope,aspect,curvature,profile curvature,plan curvature,tangential,geomorphometry,landform,ridge,channel,peak,pit,pass,residual topography,topographic position,terrain analysis,derivatives,scale,level,pyramid,wavelet</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1971,6 +2021,11 @@
   <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source> zoom   tiles  vertices  largest error (m)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>0 is the coarsest. Empty for the input itself.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2695,7 +2750,37 @@
   </message>
   <message>
     <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>channel</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
     <source>level {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>pass</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>peak</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>pit</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>planar</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>ridge</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -800,6 +800,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Degrees between the surface and the smooth one of a scale, averaged over its neighbourhoods. The first band is the largest of all scales, the second the distance on the ground at which it is found; then a band for each scale.</source>
+    <translation>Grad zwischen der Oberfläche und der glatten eines Maßstabs, gemittelt über dessen Nachbarschaften. Das erste Band ist der größte Wert aller Maßstäbe, das zweite die Entfernung am Boden, bei der er gefunden wird; dann ein Band für jeden Maßstab.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>Detail layers</source>
     <translation>Detail-Layer</translation>
   </message>
@@ -820,6 +825,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Deviation by scale</source>
+    <translation>Abweichung nach Maßstab</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>Energy by level</source>
     <translation>Energie nach Stufe</translation>
   </message>
@@ -835,8 +845,13 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
-    <source>Gathering the energy of each level</source>
-    <translation>Sammeln der Energie jeder Stufe</translation>
+    <source>Gathering the scales</source>
+    <translation>Sammeln der Maßstäbe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Height above the surroundings in their standard deviations: above 0 on ridges, below in valleys. The first band is the strongest of all scales, the second the distance on the ground at which it is found; then a band for each scale.</source>
+    <translation>Höhe über der Umgebung in deren Standardabweichungen: über 0 auf Rücken, darunter in Tälern. Das erste Band ist der stärkste Wert aller Maßstäbe, das zweite die Entfernung am Boden, bei der er gefunden wird; dann ein Band für jeden Maßstab.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
@@ -852,6 +867,11 @@
     <location filename="../../plugin/algorithms/detail_layers.py"/>
     <source>Number of points</source>
     <translation>Anzahl der Punkte</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/detail_layers.py"/>
+    <source>Roughness by scale</source>
+    <translation>Rauheit nach Maßstab</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/detail_layers.py"/>
@@ -1670,13 +1690,18 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>0 is the coarsest. Empty for the input itself.</source>
-    <translation>0 ist die gröbste. Leer für die Eingabe selbst.</translation>
+    <source>0 is the coarsest. Empty for the input itself, and for residual topography the coarsest.</source>
+    <translation>0 ist die gröbste. Leer für die Eingabe selbst, und für das Residualrelief die gröbste.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect and curvature of the surface of one level, each as smooth as the level.</source>
-    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition und Krümmung der Oberfläche einer Stufe, so glatt wie die Stufe.</translation>
+    <source>0 planar, 1 pit, 2 channel, 3 pass, 4 ridge, 5 peak, of the size of the level.</source>
+    <translation>0 eben, 1 Senke, 2 Rinne, 3 Sattel, 4 Rücken, 5 Gipfel, von der Größe der Stufe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
+    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition, Krümmung und Landformen der Oberfläche einer Stufe, so glatt wie die Stufe, und wie hoch Orte über ihrer Umgebung liegen. Für Stufen, die am Boden von einer Größe sind, mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysieren.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -1700,6 +1725,21 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Height above the mean of surroundings of the size of the level.</source>
+    <translation>Höhe über dem Mittel einer Umgebung von der Größe der Stufe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Instead of a level: that whose vertices are so far apart, or the nearest, in metres where the CRS states its unit.</source>
+    <translation>Statt einer Stufe: die, deren Punkte so weit auseinander liegen, oder die nächste, in Metern, wo das KBS seine Einheit nennt.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Landforms</source>
+    <translation>Landformen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Mean curvature</source>
     <translation>Mittlere Krümmung</translation>
   </message>
@@ -1715,8 +1755,18 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Or distance on the ground</source>
+    <translation>Oder Entfernung am Boden</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Profile curvature</source>
     <translation>Profilkrümmung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Residual topography</source>
+    <translation>Residualrelief</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -1750,8 +1800,8 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>slope,aspect,curvature,profile curvature,plan curvature,tangential,geomorphometry,terrain analysis,derivatives,scale,level,pyramid,wavelet</source>
-    <translation>Neigung,Exposition,Krümmung,Profilkrümmung,Horizontalkrümmung,Tangentialkrümmung,Geomorphometrie,Geländeanalyse,Ableitungen,Maßstab,Stufe,Pyramide,Wavelet</translation>
+    <source>slope,aspect,curvature,profile curvature,plan curvature,tangential,geomorphometry,landform,ridge,channel,peak,pit,pass,residual topography,topographic position,terrain analysis,derivatives,scale,level,pyramid,wavelet</source>
+    <translation>Neigung,Exposition,Krümmung,Profilkrümmung,Horizontalkrümmung,Tangentialkrümmung,Geomorphometrie,Landform,Rücken,Rinne,Gipfel,Senke,Sattel,Residualrelief,topographische Lage,Geländeanalyse,Ableitungen,Maßstab,Stufe,Pyramide,Wavelet</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_dem.py"/>
@@ -1972,6 +2022,11 @@
     <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source> zoom   tiles  vertices  largest error (m)</source>
     <translation> Zoom Kacheln  Punkte  größter Fehler (m)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/web_terrain.py"/>
+    <source>0 is the coarsest. Empty for the input itself.</source>
+    <translation>0 ist die gröbste. Leer für die Eingabe selbst.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>
@@ -2695,8 +2750,38 @@
   </message>
   <message>
     <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>channel</source>
+    <translation>Rinne</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
     <source>level {}</source>
     <translation>Stufe {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>pass</source>
+    <translation>Sattel</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>peak</source>
+    <translation>Gipfel</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>pit</source>
+    <translation>Senke</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>planar</source>
+    <translation>eben</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/layer_styles.py"/>
+    <source>ridge</source>
+    <translation>Rücken</translation>
   </message>
   <message>
     <location filename="../../plugin/ui/options_page.py"/>

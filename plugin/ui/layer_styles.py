@@ -134,6 +134,27 @@ def style_energy(layer: Any) -> None:
     _show_band(layer, band, 0.0, largest[band - 1] or 1.0, _SEQUENTIAL)
 
 
+def style_magnitude(layer: Any) -> None:
+    """Show the first band from nothing to much."""
+    _show_band(layer, 1, 0.0, _range(layer, 1)[1] or 1.0, _SEQUENTIAL)
+
+
+def style_landforms(layer: Any) -> None:
+    """Show each landform in its colour, by its name."""
+    forms = (
+        (tr("planar"), (235, 230, 215)),
+        (tr("pit"), (8, 48, 107)),
+        (tr("channel"), (66, 146, 198)),
+        (tr("pass"), (120, 180, 120)),
+        (tr("ridge"), (217, 140, 70)),
+        (tr("peak"), (165, 15, 21)),
+    )
+    classes = []
+    for label, (name, colour) in enumerate(forms):
+        classes.append(QgsPalettedRasterRenderer.Class(label, QColor(*colour), name))
+    layer.setRenderer(QgsPalettedRasterRenderer(layer.dataProvider(), 1, classes))
+
+
 def style_shape(layer: Any, name: str) -> None:
     """Show slope from flat to steep, aspect round the compass, curvature red where convex.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._kernels.shape import MAX_NEIGHBOURS, MIN_NEIGHBOURS, MIN_PIVOT
+from .._kernels.shape import MAX_NEIGHBOURS, MIN_NEIGHBOURS, MIN_PIVOTS
 from ._csr import expanded, summed
 
 #: Vertices whose neighbourhoods are looked at together: a bound on the memory.
@@ -74,7 +74,7 @@ def _fit(vertices, row, neighbour, n_rings, points, coefficients):
         [summed(row, terms[i] * terms[j] / squared, zero) for j in range(i + 1)] for i in range(5)
     ]
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        solved, solution = _solve_five(matrix, right)
+        solved, solution = _solve_five(matrix, right, MIN_PIVOTS[n_rings - 1])
         solved &= asked
         values = np.column_stack(
             [s / divisor for s in solution[:2]] + [s / (divisor * divisor) for s in solution[2:]]
@@ -83,7 +83,7 @@ def _fit(vertices, row, neighbour, n_rings, points, coefficients):
     return vertices[~solved]
 
 
-def _solve_five(matrix, right):
+def _solve_five(matrix, right, least):
     """Cholesky of all 5 x 5 systems at once; which are determined, and their solutions."""
     sound = np.ones(len(right[0]), dtype=bool)
     for i in range(5):
@@ -93,7 +93,7 @@ def _solve_five(matrix, right):
             for k in range(j):
                 total = total - matrix[i][k] * matrix[j][k]
             if i == j:
-                sound &= total > MIN_PIVOT * diagonal
+                sound &= total > least * diagonal
                 matrix[i][i] = np.sqrt(total)
             else:
                 matrix[i][j] = total / matrix[j][j]

@@ -1,1 +1,1 @@
-"""What details show: spectra, signatures, shape."""
+"""What details show: spectra, signatures, shape, landforms, maps by scale."""

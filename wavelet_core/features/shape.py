@@ -170,9 +170,9 @@ def surface_shape(mesh: TriangleMesh) -> SurfaceShape:
     At each vertex the quadratic :math:`z - z_0 = p u + q v + \tfrac12 r u^2 + s u v + \tfrac12 t
     v^2` is fitted to the neighbours by least squares, weighted by one over the squared distance
     in plan; it passes through the vertex. Quadratic surfaces come out exactly. *Our choice:* the
-    second ring joins where the first has fewer than five vertices or does not determine the
-    quadratic (corners, straight outlines); where that does not help, the gradient is the
-    area-weighted mean of the faces' and the curvature 0.
+    second ring joins where the first has fewer than five vertices or hardly determines the
+    quadratic (corners, straight outlines, neighbours near a conic); where that does not help, the
+    gradient is the area-weighted mean of the faces' and the curvature 0.
 
     References
     ----------

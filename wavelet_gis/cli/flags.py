@@ -17,6 +17,7 @@ _OF_THE_CORE = {
     "n_vertices": "vertices",
     "sigma": "denoise",
     "lengths": "metres",
+    "distance": "metres",
 }
 
 

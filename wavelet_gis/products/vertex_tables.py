@@ -5,6 +5,8 @@ Arrays and layers only; files are written by `wavelet_gis.io`, or by QGIS.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,9 +14,11 @@ from wavelet_core import (
     SHAPE_NAMES,
     STAYS,
     Progress,
+    ScaleMaps,
     TriangleMesh,
     band_components,
     band_energies,
+    heights_above_means,
     level_spacings,
     surface_shape,
     vertex_details,
@@ -28,6 +32,10 @@ __all__ = [
     "band_names",
     "component_columns",
     "energy_columns",
+    "residual_column",
+    "scale_layer",
+    "scale_map_columns",
+    "scale_map_names",
     "shape_columns",
     "shape_layer",
     "vertex_layer",
@@ -88,6 +96,59 @@ def shape_columns(mesh: TriangleMesh) -> FloatArray:
     return np.column_stack([shape.named(name) for name in SHAPE_NAMES])
 
 
+def residual_column(geo: GeoPyramid, level: int, progress: Progress | None = None) -> FloatArray:
+    """Return how far every vertex is above the mean of its surroundings, ``(n_vertices,)``.
+
+    Parameters
+    ----------
+    geo : GeoPyramid
+        What is analysed.
+    level : int
+        Whose neighbourhoods the surroundings are.
+    progress : callable, optional
+        See `wavelet_core.features.scale_maps.heights_above_means`.
+
+    Returns
+    -------
+    ndarray
+        In the input's unit of z.
+    """
+    above = heights_above_means(geo.pyramid, [level], progress)[:, 0]
+    return above / _file_scale(geo, "z")
+
+
+def scale_map_columns(maps: ScaleMaps) -> FloatArray:
+    """Return the strongest value, the spacing where it is found, and the values of each scale.
+
+    Parameters
+    ----------
+    maps : ScaleMaps
+        Of all vertices of the input.
+    """
+    return np.column_stack([maps.strongest, maps.strongest_distance, maps.values])
+
+
+def scale_map_names(geo: GeoPyramid, maps: ScaleMaps, what: str) -> tuple[str, ...]:
+    """Name of the raster band of each of `scale_map_columns`.
+
+    Parameters
+    ----------
+    geo : GeoPyramid
+        Knows the unit of distances.
+    maps : ScaleMaps
+        Whose scales are named.
+    what : str
+        The measure.
+    """
+    unit = _distance_unit(geo)
+    scales = zip(maps.levels, maps.distances, strict=True)
+    return (
+        f"strongest {what}",
+        f"spacing of the strongest, {unit}",
+        *(f"{what} of level {level}, spacing {at:.3g} {unit}" for level, at in scales),
+    )
+
+
 def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
     """Name of the raster band of each level, with its spacing; the coarsest level first.
 
@@ -99,9 +160,7 @@ def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
         The first word.
     """
     spacings = level_spacings(geo.pyramid)[1:]
-    unit = "m" if geo.system.kind == "geographic" else "units"
-    if geo.system.kind == "projected" and geo.system.horizontal_unit == 1.0:
-        unit = "m"
+    unit = _distance_unit(geo)
     return tuple(
         f"{what} of level {level}, spacing {spacing:.3g} {unit}"
         for level, spacing in enumerate(spacings)
@@ -157,7 +216,32 @@ def vertex_layer(
     )
 
 
-def shape_layer(geo: GeoPyramid, level: int) -> Layer:
+def scale_layer(
+    geo: GeoPyramid, what: str, columns: FloatArray, names: Sequence[str], meaning: str
+) -> Layer:
+    """Return every vertex of the input with values of scales.
+
+    Parameters
+    ----------
+    geo : GeoPyramid
+        What is analysed.
+    what : str
+        Name of the layer.
+    columns : (n_vertices, n_columns) float64
+        The values.
+    names : sequence of str
+        Of the fields.
+    meaning : str
+        What the values are, for people.
+    """
+    vertices = geo.frame.to_file(geo.pyramid.synthesise().vertices)
+    fields: dict[str, NDArray] = {"vertex_id": np.arange(len(vertices), dtype=np.int64)}
+    fields.update(zip(names, columns.T, strict=True))
+    title = f"{what.replace('_', ' ').capitalize()} of the vertices"
+    return Layer(what, "Point Z", points_wkb(vertices), fields, vertex_style(), title, meaning)
+
+
+def shape_layer(geo: GeoPyramid, level: int, classes: NDArray[np.int8] | None = None) -> Layer:
     """Return the vertices of a level with slope, aspect and curvatures of its surface.
 
     Parameters
@@ -166,6 +250,8 @@ def shape_layer(geo: GeoPyramid, level: int) -> Layer:
         What is analysed.
     level : int
         Whose surface.
+    classes : (n_vertices,) int8, optional
+        Its landforms, as one field more: ``landform``.
     """
     mesh = geo.pyramid.mesh(level)
     columns = shape_columns(mesh)
@@ -175,6 +261,8 @@ def shape_layer(geo: GeoPyramid, level: int) -> Layer:
         "elevation": vertices[:, 2],
     }
     fields.update({name: columns[:, k] for k, name in enumerate(SHAPE_NAMES)})
+    if classes is not None:
+        fields["landform"] = classes.astype(np.int32)
     return Layer(
         f"shape_level_{level:02d}",
         "Point Z",
@@ -185,6 +273,11 @@ def shape_layer(geo: GeoPyramid, level: int) -> Layer:
         "Slope and aspect (of descent, from north) in degrees; curvatures in one over the unit of "
         "the working frame, convex positive",
     )
+
+
+def _distance_unit(geo: GeoPyramid) -> str:
+    is_metre = geo.system.kind == "projected" and geo.system.horizontal_unit == 1.0
+    return "m" if is_metre or geo.system.kind == "geographic" else "units"
 
 
 def _file_scale(geo: GeoPyramid, channel: str | None) -> float:

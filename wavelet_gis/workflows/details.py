@@ -1,4 +1,4 @@
-"""Details of a pyramid: their strength by level, what each level adds, shape by level."""
+"""Maps of a pyramid's scales: strength of details, roughness, deviation, shape and landforms."""
 
 from __future__ import annotations
 
@@ -7,33 +7,58 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
-from wavelet_core import Progress, TriangleMesh
+from wavelet_core import Progress, ScaleMaps, TriangleMesh
 from wavelet_core.errors import OptionError
+from wavelet_core.features.landforms import LANDFORMS, landforms
+from wavelet_core.features.scale_maps import (
+    deviation_by_scale,
+    level_at_distance,
+    roughness_by_scale,
+)
 from wavelet_core.features.shape import SHAPE_NAMES, SurfaceShape, surface_shape
 from wavelet_core.features.spectrum import vertex_details
 from wavelet_core.lifting.spacings import level_spacings
-from wavelet_gis.errors import OutputFileError
+from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, RASTER_SUFFIXES, suffix_of
+from wavelet_gis.model.dem import GridGeometry
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.notes import warn
 from wavelet_gis.products.layers import Layer
-from wavelet_gis.products.vertex_raster import Bands, label_band, value_bands
+from wavelet_gis.products.vertex_raster import NO_LABEL, Bands, label_band, value_bands
 from wavelet_gis.products.vertex_tables import (
     band_names,
     component_columns,
     energy_columns,
+    residual_column,
+    scale_layer,
+    scale_map_columns,
+    scale_map_names,
     shape_layer,
     vertex_layer,
 )
-from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, require_levels
+from wavelet_gis.workflows.options import HoldsPyramid, metre_of, pyramid_of, require_levels
 
 __all__ = ["QUANTITIES", "Details", "LevelDetails", "Quantity", "details"]
 
 #: What may be asked for: root mean square detail around each vertex, a column per level; what each
-#: level adds, signed; the level at which each vertex went; slope, aspect and curvatures.
-Quantity = Literal["energy", "component", "level", "shape"]
+#: level adds, signed; the level at which each vertex went; slope, aspect and curvatures of a level;
+#: its landform classes; heights above the means of surroundings of its size; by scale, the angle
+#: between the surface and the smooth one, and such heights in standard deviations.
+Quantity = Literal[
+    "energy", "component", "level", "shape", "landforms", "residual", "roughness", "deviation"
+]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
+#: Those of one level.
+OF_ONE_LEVEL = ("shape", "landforms", "residual")
+
+#: Those that compare scales, with the function that does, and what their values are.
+_BY_SCALE = {
+    "roughness": (roughness_by_scale, "degrees between the surface and that of the level"),
+    "deviation": (deviation_by_scale, "standard deviations above the surroundings"),
+}
 
 #: Those with a column a level: what gives the columns, and the first word of their names.
 _BY_LEVEL = {"energy": (energy_columns, "rms"), "component": (component_columns, "component")}
@@ -63,18 +88,22 @@ class Details:
     ----------
     geo : GeoPyramid
         The pyramid.
-    what : {"energy", "component", "level", "shape"}
+    what : str
         See `Quantity`.
     level : int
-        Whose shape.
+        Whose shape or landforms; of whose size the surroundings of residual heights are.
     channel : str or None
         Whose energy or component; None is the geometry.
+    flat_slope, flat_curvature : float
+        See `wavelet_core.landforms`.
     """
 
     geo: GeoPyramid
     what: Quantity
     level: int
     channel: str | None
+    flat_slope: float = 1.0
+    flat_curvature: float = 1e-4
 
     def levels(self) -> list[LevelDetails]:
         """Return how strong the details of each level are, the coarsest first."""
@@ -88,7 +117,11 @@ class Details:
         return rows
 
     def raster(self, cell_size: float | None = None, progress: Progress | None = None) -> Bands:
-        """Return the quantity as a raster, one band per level or per measure of shape.
+        """Return the quantity as a raster.
+
+        One band per level or per measure of shape; for roughness and deviation the strongest of
+        all scales, the spacing at which it is found, then a band for each scale. Landforms are
+        places in ``wavelet_core.LANDFORMS``.
 
         Parameters
         ----------
@@ -99,27 +132,55 @@ class Details:
             Called with a fraction in [0, 1]; the work stops when it returns False.
         """
         geo = self.geo
+        if self.what in _BY_SCALE:
+            maps = self._scale_maps(progress)
+            names = scale_map_names(geo, maps, self.what)
+            finest = geo.pyramid.synthesise()
+            return value_bands(geo, finest, scale_map_columns(maps), names, cell_size)
+        if self.what == "residual":
+            column = residual_column(geo, self.level, progress)[:, None]
+            name = f"height above the mean around, level {self.level}"
+            return value_bands(geo, geo.pyramid.synthesise(), column, (name,), cell_size)
         mesh = geo.pyramid.mesh(self.level)
         if self.what == "level":
             name = "level at which a vertex went"
             return label_band(geo, mesh, vertex_details(geo.pyramid).level, name, cell_size)
         if self.what == "shape":
             return _shape_bands(geo, mesh, cell_size)
+        if self.what == "landforms":
+            return self._landform_band(mesh, cell_size)
         columns_of, word = _BY_LEVEL[self.what]
         columns = columns_of(geo, self.channel, progress)
         return value_bands(geo, mesh, columns, band_names(geo, word), cell_size)
 
     def layer(self, progress: Progress | None = None) -> Layer:
-        """Return the vertices as a layer: with their shape, or with details and spectrum.
+        """Return the vertices as a layer.
+
+        With their shape (landforms as one field more), with what else was asked for by scale, or
+        with details and spectrum.
 
         Parameters
         ----------
         progress : callable, optional
             Called with a fraction in [0, 1]; the work stops when it returns False.
         """
+        geo = self.geo
         if self.what == "shape":
-            return shape_layer(self.geo, self.level)
-        return vertex_layer(self.geo, self.channel, progress)
+            return shape_layer(geo, self.level)
+        if self.what == "landforms":
+            shape = surface_shape(geo.pyramid.mesh(self.level))
+            return shape_layer(geo, self.level, self._classes(shape))
+        if self.what == "residual":
+            column = residual_column(geo, self.level, progress)[:, None]
+            meaning = "Height above the mean of the surroundings, in the input's unit of z"
+            name = f"residual_level_{self.level:02d}"
+            return scale_layer(geo, name, column, ("residual",), meaning)
+        if self.what in _BY_SCALE:
+            maps = self._scale_maps(progress)
+            names = ("strongest", "spacing", *(f"level_{level:02d}" for level in maps.levels))
+            meaning = f"By level: {_BY_SCALE[self.what][1]}; the strongest, and its spacing"
+            return scale_layer(geo, self.what, scale_map_columns(maps), names, meaning)
+        return vertex_layer(geo, self.channel, progress)
 
     def write(
         self,
@@ -150,13 +211,36 @@ class Details:
             return {"layer": layer.name, "n_points": len(layer.geometry)}
         raise OutputFileError(f"{path}: details are written as {PYRAMID_SUFFIX} or .tif.")
 
+    def _scale_maps(self, progress: Progress | None) -> ScaleMaps:
+        function, _ = _BY_SCALE[self.what]
+        return function(self.geo.pyramid, progress)
+
+    def _classes(self, shape: SurfaceShape) -> NDArray[np.int8]:
+        return landforms(shape, flat_slope=self.flat_slope, flat_curvature=self.flat_curvature)
+
+    def _landform_band(self, mesh: TriangleMesh, cell_size: float | None) -> Bands:
+        shape, geometry = _cell_shape(self.geo, mesh, cell_size)
+        classes = self._classes(shape)
+        labels = np.where(classes < 0, NO_LABEL, classes).astype(np.uint8)
+        kinds = ", ".join(f"{k} {name}" for k, name in enumerate(LANDFORMS))
+        return Bands(labels.reshape(1, *geometry.shape), (f"landform: {kinds}",), geometry)
+
     def figures(self) -> dict[str, Any]:
         """Return how strong the details of each level are, as JSON-able values."""
         return {"what": self.what, "levels": [row._asdict() for row in self.levels()]}
 
 
 def _shape_bands(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None) -> Bands:
-    """Return the shape of a surface by cell.
+    """Return the shape of a surface by cell, one band a measure."""
+    shape, geometry = _cell_shape(geo, mesh, cell_size)
+    values = np.stack([shape.named(name).astype(np.float32) for name in SHAPE_NAMES])
+    return Bands(values.reshape(-1, *geometry.shape), SHAPE_NAMES, geometry)
+
+
+def _cell_shape(
+    geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None
+) -> tuple[SurfaceShape, GridGeometry]:
+    """Return the shape of a surface at the cells of a grid, row by row.
 
     Slopes in x and y, and second derivatives, are what is interpolated between vertices: half way
     between an aspect of 350 and one of 10 degrees is north, not south.
@@ -165,9 +249,7 @@ def _shape_bands(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None) -
     columns = np.column_stack([at_vertices.gradient, at_vertices.hessian])
     parts = value_bands(geo, mesh, columns, ("p", "q", "r", "s", "t"), cell_size)
     cells = parts.values.reshape(len(parts.names), -1).T.astype(np.float64)
-    shape = SurfaceShape(cells[:, :2], cells[:, 2:])
-    values = np.stack([shape.named(name).astype(np.float32) for name in SHAPE_NAMES])
-    return Bands(values.reshape(-1, *parts.geometry.shape), SHAPE_NAMES, parts.geometry)
+    return SurfaceShape(cells[:, :2], cells[:, 2:]), parts.geometry
 
 
 def details(
@@ -175,26 +257,35 @@ def details(
     *,
     what: Quantity = "energy",
     level: int | None = None,
+    metres: float | None = None,
     channel: str | None = None,
+    flat_slope: float | None = None,
+    flat_curvature: float | None = None,
 ) -> Details:
-    """Return the details of a pyramid, to be shown as a raster, a layer or figures.
+    """Return what the scales of a pyramid hold, to be shown as a raster, a layer or figures.
 
     Parameters
     ----------
     data : Analysis, Filtered or GeoPyramid
         The pyramid.
-    what : {"energy", "component", "level", "shape"}
+    what : str
         See `Quantity`.
     level : int, optional
-        Of the shape; by default the input itself.
+        Of shape and landforms, by default the input itself; of whose size the surroundings of
+        residual heights are, by default the coarsest.
+    metres : float, optional
+        Instead: the level of this spacing on the ground (median edge in plan), or the nearest, in
+        metres where the CRS names its unit, else in its own.
     channel : str, optional
         Of energy and component; by default the geometry.
+    flat_slope, flat_curvature : float, optional
+        Of landforms, see `wavelet_core.landforms`; 1 degree and 1e-4 by default.
 
     Raises
     ------
     OptionError
-        Another quantity, a level for anything but the shape, a channel for that, or details of a
-        pyramid without levels.
+        Another quantity, an option that is not of it, a distance that no level has, or details of
+        a pyramid without levels.
     """
     geo = pyramid_of(data)
     if what not in QUANTITIES:
@@ -204,18 +295,63 @@ def details(
             what=what,
             known=", ".join(QUANTITIES),
         )
-    check_level_of(what, level)
-    if channel is not None and what == "shape":
+    check_options_of(what, level=level, metres=metres)
+    check_options_of(what, flat_slope=flat_slope, flat_curvature=flat_curvature)
+    if channel is not None and what not in ("energy", "component", "level"):
         raise OptionError(
-            "{0} is not for {1} shape, which is of z; leave it out.", "channel", "what"
+            "{0} is not for {1} {what}, which is of z; leave it out.", "channel", "what", what=what
         )
-    if what not in ("shape", "level"):
+    if what not in ("shape", "landforms", "level"):
         require_levels(geo)
-    chosen = geo.pyramid.n_levels if level is None else level
-    return Details(geo, what, chosen, channel)
+    if what in _BY_SCALE or metres is not None:
+        _warn_of_partition(geo, what)
+    chosen = 0 if what == "residual" else geo.pyramid.n_levels
+    if metres is not None:
+        chosen = level_at_distance(geo.pyramid, metres * metre_of(geo))
+    elif level is not None:
+        chosen = level
+    geo.pyramid.n_vertices(chosen)  # refuses a level that is not there
+    bounds = {"flat_slope": flat_slope, "flat_curvature": flat_curvature}
+    given = {name: bound for name, bound in bounds.items() if bound is not None}
+    return Details(geo, what, chosen, channel, **given)
 
 
-def check_level_of(what: str, level: int | None) -> None:
-    """Raise `OptionError` if a level was given for anything but the shape."""
-    if level is not None and what != "shape":
-        raise OptionError("{0} is for {1} shape; leave it out, or ask for it.", "level", "what")
+def check_options_of(what: str, **options: float | None) -> None:
+    """Raise `OptionError` for options that are given for what they are not, or exclude each other.
+
+    Parameters
+    ----------
+    what : str
+        See `Quantity`.
+    **options : float, optional
+        ``level`` and ``metres``, or the bounds of flat ground.
+    """
+    given = [name for name, value in options.items() if value is not None]
+    for name in given:
+        if name in ("level", "metres") and what not in OF_ONE_LEVEL:
+            raise OptionError(
+                "{0} is for {1} shape, landforms or residual; leave it out, or ask for one.",
+                name,
+                "what",
+            )
+        if name not in ("level", "metres") and what != "landforms":
+            raise OptionError(
+                "{0} is for {1} landforms; leave it out, or ask for them.", name, "what"
+            )
+    if {"level", "metres"} <= set(given):
+        raise OptionError("{0} and {1} exclude each other; give one.", "level", "metres")
+
+
+def _warn_of_partition(geo: GeoPyramid, what: str) -> None:
+    partition = geo.pyramid.parameters.get("partition")
+    if partition != "random":
+        warn(
+            TerrainWarning,
+            "levels_are_no_sizes",
+            "the levels of partition {partition} are not of one size on the ground everywhere, as "
+            "{what} takes them to be; analyse with {0} random and {1} plane.",
+            "partition",
+            "prediction",
+            partition=partition,
+            what=what,
+        )

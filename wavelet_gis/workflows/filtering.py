@@ -32,7 +32,7 @@ from wavelet_gis.model.attributes.lines import line_labels
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.notes import warn
-from wavelet_gis.workflows.options import HoldsPyramid, pyramid_of, require_levels
+from wavelet_gis.workflows.options import HoldsPyramid, metre_of, pyramid_of, require_levels
 from wavelet_gis.workflows.reconstruct import Reconstruction, reconstruct
 from wavelet_gis.workflows.save import Layers, write_pyramid_file
 
@@ -298,7 +298,7 @@ def denoised(
     if stripes is not None:
         finest = geo.pyramid.synthesise() if finest is None else finest
         lines = line_labels(geo.origin, finest, stripes)
-    reach = noise_range if noise_range == "estimate" else noise_range * _metre(geo)
+    reach = noise_range if noise_range == "estimate" else noise_range * metre_of(geo)
     pyramid, sigmas, described = geo.pyramid, dict[str, float](), []
     for k, name in enumerate(channels):
         mesh = pyramid.synthesise() if k > 0 or finest is None else finest
@@ -328,7 +328,7 @@ def denoised(
             if noise.is_rough:
                 _warn_of_roughness(geo.source_name, name, noise.sigma / unit, noise_range)
         sigmas[name] = noise.sigma / unit
-        described.append(f"{name} {_in_file(noise, unit, _metre(geo)).describe()}")
+        described.append(f"{name} {_in_file(noise, unit, metre_of(geo)).describe()}")
     how = f"average of {n_pyramids} pyramids" if n_pyramids else "thresholds"
     line = f"denoised by {how}, standard deviation of the noise: {'; '.join(described)}"
     return geo.with_pyramid(pyramid, line), sigmas
@@ -441,7 +441,7 @@ def chosen_gains(
         raise OptionError("{0} and {1} exclude each other; give one.", "levels", "metres")
     chosen: dict[int, float] = {}
     if metres is not None:
-        unit = _metre(geo)
+        unit = metre_of(geo)
         chosen = band_gains(geo.pyramid, lengths=(metres[0] * unit, metres[1] * unit))
     elif levels is not None:
         chosen = band_gains(geo.pyramid, levels=levels)
@@ -501,7 +501,7 @@ def with_sizes(
     OptionError
         Bounds in the wrong order.
     """
-    low, high = metres[0] * _metre(geo), metres[1] * _metre(geo)
+    low, high = metres[0] * metre_of(geo), metres[1] * metre_of(geo)
     finest = geo.pyramid.synthesise()
     largest = max(bound for bound in (low, high, 0.0) if bound < float("inf"))
     spacing = mesh_spacing(finest)
@@ -529,13 +529,8 @@ def _has_sizes(geo: GeoPyramid, metres: tuple[float, float]) -> bool:
     """Return whether the levels of a pyramid are bands of sizes, and one is within bounds."""
     if geo.pyramid.parameters.get("partition") != "random":
         return False
-    sizes = level_spacings(geo.pyramid)[1:] / _metre(geo)
+    sizes = level_spacings(geo.pyramid)[1:] / metre_of(geo)
     return bool(((metres[0] <= sizes) & (sizes <= metres[1])).any())
-
-
-def _metre(geo: GeoPyramid) -> float:
-    """Return a metre in the unit of the working frame, where that is known."""
-    return 1.0 / geo.system.working_unit
 
 
 def _noise_of(pyramid: Pyramid, finest: TriangleMesh, channel: str) -> float:

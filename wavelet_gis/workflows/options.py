@@ -22,6 +22,7 @@ __all__ = [
     "HoldsPyramid",
     "WaveletOptions",
     "core_options",
+    "metre_of",
     "note_moved_outline",
     "note_unreached_size",
     "options_for",
@@ -229,6 +230,11 @@ class HoldsPyramid(Protocol):
     @property
     def geo(self) -> GeoPyramid:
         """The pyramid."""
+
+
+def metre_of(geo: GeoPyramid) -> float:
+    """Return a metre in the unit of the working frame, where that is known."""
+    return 1.0 / geo.system.working_unit
 
 
 def pyramid_of(data: HoldsPyramid | GeoPyramid) -> GeoPyramid:

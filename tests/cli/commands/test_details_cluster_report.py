@@ -105,6 +105,80 @@ def test_levels_and_shape_as_rasters(run):
     assert figures["what"] == "shape"
 
 
+def test_roughness_and_deviation_tell_the_strongest_and_its_spacing(run):
+    for what in ("roughness", "deviation"):
+        _, path, figures = run("details", "d.gpkg", f"{what}.tif", "--what", what)
+        with rasterio.open(path) as dataset:
+            bands, names = dataset.read(), dataset.descriptions
+        assert names[:2] == (f"strongest {what}", "spacing of the strongest, m")
+        assert names[2].startswith(f"{what} of level 0, spacing ")
+        np.testing.assert_array_equal(np.abs(bands[0]), np.abs(bands[2:]).max(axis=0))
+        spacings = {float(name.split()[-2]) for name in names[2:]}
+        assert {float(f"{spacing:.3g}") for spacing in np.unique(bands[1])} <= spacings
+        assert figures["what"] == what
+        _, path, figures = run("details", "d.gpkg", f"{what}.gpkg", "--what", what)
+        meta, _, _, columns = pyogrio.raw.read(path, layer=what)
+        values = dict(zip(meta["fields"], columns, strict=True))
+        np.testing.assert_allclose(values["strongest"], bands[0].ravel(), rtol=1e-6)
+        assert {"vertex_id", "spacing", "level_00"} <= set(values)
+
+
+def test_residual_is_the_height_above_the_mean_around(run, folder):
+    from wavelet_core import heights_above_means
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
+
+    above = heights_above_means(read_pyramid(folder / "d.gpkg").pyramid, [0])[:, 0]
+    _, path, _ = run("details", "d.gpkg", "r.tif", "--what", "residual")
+    with rasterio.open(path) as dataset:
+        np.testing.assert_allclose(dataset.read(1).ravel(), above, atol=1e-4)
+        assert dataset.descriptions == ("height above the mean around, level 0",)
+    _, points, _ = run("details", "d.gpkg", "r.gpkg", "--what", "residual", "--level", "0")
+    meta, _, _, columns = pyogrio.raw.read(points, layer="residual_level_00")
+    values = dict(zip(meta["fields"], columns, strict=True))
+    np.testing.assert_allclose(values["residual"], above, atol=1e-9)
+
+
+def test_landforms_of_a_distance_on_the_ground(run):
+    _, path, _ = run("details", "d.gpkg", "f.tif", "--what", "landforms", "--level-metres", "10")
+    with rasterio.open(path) as dataset:
+        forms = dataset.read(1)
+        assert dataset.nodata == 255
+        assert dataset.descriptions[0].startswith("landform: 0 planar, 1 pit, 2 channel")
+    assert set(np.unique(forms)) <= {0, 1, 2, 3, 4, 5}
+    steep = ["--flat-slope", "80", "--flat-curvature", "0"]
+    _, path, _ = run("details", "d.gpkg", "g.tif", "--what", "landforms", *steep)
+    with rasterio.open(path) as dataset:
+        assert (dataset.read(1) != forms).any()
+        assert not (dataset.read(1) == 0).any()
+    _, points, _ = run("details", "d.gpkg", "f.gpkg", "--what", "landforms")
+    meta, _, _, columns = pyogrio.raw.read(points, layer="shape_level_06")
+    values = dict(zip(meta["fields"], columns, strict=True))
+    np.testing.assert_array_equal(values["landform"], forms.ravel())
+
+
+def test_options_of_other_maps_are_refused(run, folder):
+    def said(*options):
+        return run("details", "d.gpkg", "x.tif", *options)[2]
+
+    assert "--level-metres is for --what shape" in said("--level-metres", "20")
+    assert "--flat-slope is for --what landforms" in said("--what", "shape", "--flat-slope", "2")
+    both = said("--what", "shape", "--level", "1", "--level-metres", "20")
+    assert "--level and --level-metres exclude each other" in both
+    far = said("--what", "residual", "--level-metres", "1e6")
+    assert "--level-metres is 1e+06, but the levels' spacings are 10 to" in far
+    assert "give 0 or more" in said("--what", "landforms", "--flat-curvature", "-1")
+    assert "there is no level 7" in said("--what", "residual", "--level", "7")
+    assert "--channel is not for --what roughness" in said("--what", "roughness", "--channel", "z")
+
+
+def test_maps_of_scales_say_that_levels_are_no_sizes(folder, tmp_path, capsys):
+    pyramid = str(tmp_path / "q.gpkg")
+    assert main(["analyse", str(folder / "dem.tif"), pyramid, "--levels", "4", "--quiet"]) == 0
+    out = str(tmp_path / "r.tif")
+    assert main(["details", pyramid, out, "--what", "roughness"]) == 0
+    assert "not of one size on the ground everywhere" in capsys.readouterr().err
+
+
 def test_details_as_points_have_every_vertex(run):
     _, path, figures = run("details", "c.gpkg", "p.gpkg", "--channel", "intensity")
     meta, _, geometry, columns = pyogrio.raw.read(path, layer="vertex_spectra")

@@ -140,3 +140,19 @@ def test_slope_falls_as_the_surface_is_smoothed():
         np.nanmedian(surface_shape(pyramid.mesh(level)).slope) for level in (pyramid.n_levels, 0)
     ]
     assert steep[1] < steep[0]
+
+
+def test_neighbours_near_a_conic_give_no_wall():
+    # They hardly determine the quadratic; it was taken all the same, and twelve times as steep as
+    # the steepest face around.
+    rng = np.random.default_rng(0)
+    plan = rng.uniform(0, 100, (4000, 2))
+    mesh = TriangleMesh.from_points(np.column_stack([plan, rng.normal(0, 0.1, 4000)]))
+    corners = mesh.vertices[mesh.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    steepest = np.zeros(4000)
+    of_faces = np.hypot(normals[:, 0], normals[:, 1]) / normals[:, 2]
+    np.maximum.at(steepest, mesh.faces.ravel(), np.repeat(of_faces, 3))
+    inner = np.abs(plan - 50).max(axis=1) < 48
+    slope = np.tan(np.radians(surface_shape(mesh).slope))
+    assert (slope[inner] < 4 * steepest[inner]).all()

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from osgeo import gdal
 from qgis_layers import Log, hills, numbers, wkt_layer, write_raster
 
 X, Y = 700000.0, 6600000.0  # corner of the raster, whose cells are of 10 m
@@ -156,6 +157,26 @@ class TestShape:
         assert low == -high
         assert "LEVEL = 2" in layers["Slope"].metadata().abstract()
 
+    def test_landforms_and_heights_above_a_distance(self, run, refused, made, tmp_path):
+        outputs = {name: str(tmp_path / f"{name}.tif") for name in ("LANDFORMS", "RESIDUAL")}
+        pyramid = {"INPUT": str(made / "p.gpkg")}
+        run("shapeoflevel", {**pyramid, "LEVEL_METRES": 12.0, **outputs})
+        forms, above = numbers(outputs["LANDFORMS"], "u1"), numbers(outputs["RESIDUAL"])
+        assert set(np.unique(forms)) <= {0, 1, 2, 3, 4, 5}
+        assert len(np.unique(forms)) > 2
+        assert abs(above.mean()) < 0.2 * above.std()
+        both = refused("shapeoflevel", {**pyramid, "LEVEL": 1, "LEVEL_METRES": 12.0, **outputs})
+        assert "exclude each other" in both
+        far = refused("shapeoflevel", {**pyramid, "LEVEL_METRES": 1e6, **outputs})
+        assert "levels' spacings are" in far
+
+    def test_landforms_open_by_their_names(self, opened, made):
+        outputs = dict.fromkeys(("LANDFORMS", "RESIDUAL"), "TEMPORARY_OUTPUT")
+        layers = opened("shapeoflevel", {"INPUT": str(made / "p.gpkg"), "LEVEL": 2, **outputs})
+        classes = layers["Landforms"].renderer().classes()
+        assert [entry.label for entry in classes][:3] == ["planar", "pit", "channel"]
+        assert set(layers) == {"Landforms", "Residual topography"}
+
     def test_no_output_is_refused(self, refused, made):
         assert "choose a raster" in refused("shapeoflevel", {"INPUT": str(made / "p.gpkg")})
 
@@ -240,3 +261,14 @@ def test_reading_bands_back_moves_the_bar_and_heeds_cancel(qgis, provider, tmp_p
     with pytest.raises(Cancelled):
         write_bands(str(tmp_path / "b.tif"), bands, crs, feedback, cancel_at_the_end)
     assert [path.name for path in tmp_path.iterdir()] == ["a.tif"]
+
+
+class TestScales:
+    def test_roughness_and_deviation_have_the_strongest_first(self, run, made, tmp_path):
+        outputs = {name: str(tmp_path / f"{name}.tif") for name in ("ROUGHNESS", "DEVIATION")}
+        run("detaillayers", {"INPUT": str(made / "p.gpkg"), "OUTPUT": "memory:", **outputs})
+        for path in outputs.values():
+            raster = gdal.Open(path)
+            assert raster.RasterCount >= 3
+            bands = np.frombuffer(raster.ReadRaster(), "f4").reshape(-1, 60, 80)
+            np.testing.assert_array_equal(np.abs(bands[0]), np.abs(bands[2:]).max(axis=0))

@@ -20,7 +20,16 @@ HELP = "Write what the details of each level hold, as points (GPKG), a raster (T
 
 SUFFIXES = (PYRAMID_SUFFIX, *RASTER_SUFFIXES, *PICTURE_SUFFIXES)
 
-WHAT = ("energy", "component", "level", "shape")
+WHAT = (
+    "energy",
+    "component",
+    "level",
+    "shape",
+    "landforms",
+    "residual",
+    "roughness",
+    "deviation",
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,10 +42,38 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="energy",
         help="energy: root mean square detail around each vertex, one raster band per level "
         "(default); component: what each level adds, signed; level: at which each vertex went; "
-        "shape: slope, aspect and curvatures of the surface of --level",
+        "shape: slope, aspect and curvatures of the surface of --level; landforms: its planar "
+        "ground, pits, channels, passes, ridges and peaks (0 to 5); residual: height above the "
+        "mean of surroundings of the size of --level; roughness: degrees between the surface and "
+        "the smooth one of each scale; deviation: standard deviations above the surroundings at "
+        "each scale; of both first the strongest of all scales and the spacing where it is",
     )
     parser.add_argument(
-        "--level", type=int, metavar="K", help="of --what shape; by default the input itself"
+        "--level",
+        type=int,
+        metavar="K",
+        help="of shape and landforms, by default the input itself; of residual, by default the "
+        "coarsest",
+    )
+    parser.add_argument(
+        "--level-metres",
+        dest="metres",
+        type=float,
+        metavar="M",
+        help="instead of --level: the one whose spacing on the ground is nearest to this, in "
+        "metres where the CRS states its unit, else in its own; 'details' lists the spacings",
+    )
+    parser.add_argument(
+        "--flat-slope",
+        type=float,
+        metavar="DEGREES",
+        help="of landforms: ground that slopes more is no pit, pass or peak (1)",
+    )
+    parser.add_argument(
+        "--flat-curvature",
+        type=float,
+        metavar="C",
+        help="of landforms: what curves less is straight, in one over the unit of length (0.0001)",
     )
     parser.add_argument(
         "--channel", metavar="NAME", help="of the pyramid's channels; by default the geometry"
@@ -48,7 +85,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.io.atomic import check_output, new_file
-    from wavelet_gis.workflows.details import check_level_of, details
+    from wavelet_gis.workflows.details import check_options_of, details
     from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.save import save
 
@@ -58,9 +95,16 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         suffixes=SUFFIXES,
         inputs=(arguments.file,),
     )
-    check_level_of(arguments.what, arguments.level)
+    of_level = {"level": arguments.level, "metres": arguments.metres}
+    flat = {"flat_slope": arguments.flat_slope, "flat_curvature": arguments.flat_curvature}
+    check_options_of(arguments.what, **of_level)
+    check_options_of(arguments.what, **flat)
     found = details(
-        load(arguments.file), what=arguments.what, level=arguments.level, channel=arguments.channel
+        load(arguments.file),
+        what=arguments.what,
+        channel=arguments.channel,
+        **of_level,
+        **flat,
     )
     written: dict[str, Any] = {}
     if suffix_of(arguments.output) in PICTURE_SUFFIXES:
