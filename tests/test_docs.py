@@ -159,6 +159,8 @@ def test_rows_of_a_table_have_the_cells_of_its_head(page):
         if not line.startswith("|"):
             n_cells = None
             continue
+        if n_cells is None:  # a screen reader says the head of a column with each of its cells
+            assert not re.search(r"\|\s*\|", line), line
         found = len(re.findall(r"(?<!\\)\|", re.sub(r"`[^`]*`", "", line)))
         assert n_cells in (None, found), line
         n_cells = found

@@ -6,9 +6,10 @@ nearest neighbour, so that a rule alone decides. The target that a rule forbids 
 
 import numpy as np
 import pytest
-from helpers_meshes import grid_with_holes, tube
+from helpers_meshes import grid_with_holes, random_delaunay, tube
 
 from wavelet_core import TriangleMesh, analyse
+from wavelet_core.lifting.signal import Normalisation, height_weights
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.partition.orderings import LevelView, _label
 
@@ -283,3 +284,37 @@ def test_link_two_apexes_of_a_bipyramid_do_not_both_go():
     lower = [(1, 3, 2), (1, 4, 3), (1, 2, 4)]
     mesh = TriangleMesh(vertices, upper + lower)
     assert collapses(mesh, [0, 1], "xyz").keys() == {0}
+
+
+def test_columns_count_by_their_range_and_weight():
+    """Ranges of 10, 20, 5 and of an attribute 4, which counts for three times as much."""
+    vertices = [[0.0, 0.0, 1.0], [10.0, 0.0, 6.0], [0.0, 20.0, 1.0]]
+    mesh = TriangleMesh(vertices, [[0, 1, 2]], [[2.0], [2.0], [6.0]], ["a"])
+    normal = Normalisation(mesh, [3.0])
+    points, plan = normal.points(np.column_stack([mesh.vertices, mesh.attributes]), None)
+    assert plan.tolist() == [[-5.0, -10.0], [5.0, -10.0], [-5.0, 10.0]]
+    assert points.tolist() == [
+        [-0.5, -0.5, -0.5, -1.5], [0.5, -0.5, 0.5, -1.5], [-0.5, 0.5, -0.5, 1.5],
+    ]  # fmt: skip
+    assert normal.height_weights().tolist() == [1.0, 3.75]  # an error of 4 as one of z of 15
+    assert height_weights(np.array([0.0, 4.0]), [3.0]).tolist() == [1.0, 0.75]
+
+
+@pytest.mark.parametrize("partition", ["surface", "colouring"])
+def test_where_all_three_corners_are_locked_the_free_ring_takes_the_update(partition):
+    """Else the detail would reach nobody, and the mean of the level would change."""
+    mesh = random_delaunay(300, seed=6)
+    locked = np.random.default_rng(1).random(mesh.n_vertices) < 0.6
+    pyramid = analyse(mesh, levels=1, locked=locked, partition=partition, prediction="barycentric")
+    step, ids = pyramid.steps[0], pyramid.vertex_ids(0)
+    faces, prediction = pyramid.mesh(1).faces, pyramid.filters(0).prediction
+    n_stuck = 0
+    for row, odd in enumerate(step.odd):
+        columns = prediction.indices[slice(*prediction.indptr[row : row + 2])]
+        ring = np.setdiff1d(faces[(faces == odd).any(axis=1)], [odd])
+        free = set(ring[~locked[ring]].tolist())
+        used = set(ids[columns].tolist())
+        if locked[ids[columns[:3]]].all():
+            n_stuck += 1
+            assert used - set(ids[columns[:3]].tolist()) == free
+    assert n_stuck > 3

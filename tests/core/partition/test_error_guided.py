@@ -342,6 +342,19 @@ def test_a_size_that_is_missed_is_told_with_its_reason():
     assert analyse(coast(), partition="quadric", target_vertices=20).stop.misses_target
 
 
+def test_what_is_left_is_counted_by_why_it_stays():
+    locked = np.arange(80) % 9 == 0
+    pyramid = analyse(synthetic.hills(8, 10), levels=1, locked=locked)
+    coarse, stop = pyramid.mesh(0), pyramid.stop
+    edges = np.sort(np.concatenate([coarse.faces[:, [k, (k + 1) % 3]] for k in range(3)]), axis=1)
+    sides, counts = np.unique(edges, axis=0, return_counts=True)
+    outline = np.isin(np.arange(coarse.n_vertices), sides[counts == 1])
+    fixed = locked[pyramid.vertex_ids(0)]
+    assert stop.n_locked == fixed.sum()
+    assert stop.n_outline == (outline & ~fixed).sum() > 10
+    assert stop.n_inner == (~outline & ~fixed).sum() > 10
+
+
 @pytest.mark.parametrize("rule", ["max_error", "max_rms"])
 @pytest.mark.parametrize("locks", [False, True])
 def test_a_tolerance_that_nothing_would_break_is_not_the_reason(rule, locks):

@@ -18,6 +18,7 @@ from wavelet_gis.io.pyramid.codecs import array_codec
 from wavelet_gis.io.pyramid.codecs.array_codec import (
     ArrayHeader,
     Tally,
+    closest_header,
     decode_array,
     encode_array,
     header_of,
@@ -110,6 +111,7 @@ def chunk_of(n_bytes):
     [
         (header(4), []),  # too few
         (header(4), [chunk_of(32), chunk_of(32)]),  # too many
+        (header(4), [chunk_of(32), chunk_of(0)]),  # too many, one of them of no rows
         (header(8), [chunk_of(32)]),
         (header(4), [chunk_of(31)]),  # too short
         (header(4), [chunk_of(40)]),  # a little bomb
@@ -124,6 +126,75 @@ def chunk_of(n_bytes):
 def test_chunks_that_do_not_hold_what_is_declared(declared, chunks):
     with pytest.raises(PyramidError, match="damaged"):
         decode_array(declared, chunks, max(sum(map(len, chunks)), 1))
+
+
+LZMA = [{"id": lzma.FILTER_LZMA2, "dict_size": 1 << 20, "lc": 0, "lp": 0, "pb": 0}]
+#: As docs/reference/format.md has them: floats in order, differences, zigzag, the compressor.
+AS_WRITTEN_DOWN = {
+    "shuffle": (False, 0, False, "zlib"),
+    "delta_shuffle": (False, 1, False, "zlib"),
+    "lzma": (False, 0, False, "lzma"),
+    "zigzag_lzma": (True, 0, True, "lzma"),
+    "delta_lzma": (True, 1, True, "lzma"),
+    "delta2_lzma": (True, 2, True, "lzma"),
+}
+
+
+def packed_by_hand(array, name):
+    """Return the chunk of an array, number by number."""
+    in_order, n_differences, is_zigzag, compressor = AS_WRITTEN_DOWN[name]
+    n_bits, n_bytes = 8 * array.dtype.itemsize, array.dtype.itemsize
+    numbers = [int.from_bytes(value.tobytes(), "little") for value in array]
+    if in_order and array.dtype.kind == "f":
+        sign, low = 1 << (n_bits - 1), (1 << (n_bits - 1)) - 1
+        numbers = [number ^ low if number & sign else number for number in numbers]
+    for _ in range(n_differences):
+        before = [0, *numbers[:-1]]
+        numbers = [(a - b) % (1 << n_bits) for a, b in zip(numbers, before, strict=True)]
+    if is_zigzag:
+        half, whole = 1 << (n_bits - 1), 1 << n_bits
+        numbers = [2 * n if n < half else 2 * (whole - n) - 1 for n in numbers]
+    rows = [number.to_bytes(n_bytes, "little") for number in numbers]
+    shuffled = bytes(row[place] for place in range(n_bytes) for row in rows)
+    if compressor == "zlib":
+        return zlib.compress(shuffled)
+    return lzma.compress(shuffled, lzma.FORMAT_RAW, filters=LZMA)
+
+
+@pytest.mark.parametrize("name", array_codec.FILTERS)
+@pytest.mark.parametrize("dtype", ["<i4", "<f8", "<u2"])
+def test_what_is_packed_as_the_format_says_is_read(name, dtype):
+    """A change of writer and reader alike comes back, and yet reads no file of before."""
+    array = np.array([3, 0, 250, 7, 7, 1, 90], dtype)
+    if dtype != "<u2":
+        array[::2] *= -1
+    declared = ArrayHeader.checked(dtype, [7], name, 4)
+    chunks = [packed_by_hand(array[:4], name), packed_by_hand(array[4:], name)]
+    back = decode_array(declared, chunks, sum(map(len, chunks)))
+    assert back.tobytes() == array.tobytes()
+
+
+@pytest.mark.parametrize("name", ["lzma", "delta2_lzma"])
+def test_a_chunk_that_ends_too_early_is_refused(name):
+    chunk = packed_by_hand(np.arange(4, dtype="<f8"), name)
+    for broken in (chunk[:-1], chunk[: len(chunk) // 2], b"", chunk + b"more"):
+        with pytest.raises(PyramidError, match="damaged"):
+            decode_array(ArrayHeader.checked("<f8", [4], name, 4), [broken], len(chunk))
+
+
+def test_no_rows_need_no_choice():
+    empty = np.zeros((0, 3))
+    assert closest_header(empty) == header_of(empty)
+
+
+def test_the_filter_is_chosen_by_the_rows_in_the_middle(monkeypatch):
+    monkeypatch.setattr(array_codec, "_SAMPLE_ROWS", 1000)
+    noise = np.random.default_rng(0).integers(0, 2**62, 1000)
+    ramp = np.arange(1000) ** 2 * 10**6
+    assert closest_header(np.concatenate([noise, ramp, noise])).filter == "delta2_lzma"
+    assert closest_header(ramp).filter == "delta2_lzma"
+    assert closest_header(np.concatenate([ramp, noise, ramp])).filter != "delta2_lzma"
+    assert work_of(ramp) == ramp.nbytes * (1 + len(array_codec.FILTERS))
 
 
 def test_a_bomb_is_not_expanded(monkeypatch):

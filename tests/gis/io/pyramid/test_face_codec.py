@@ -45,6 +45,20 @@ def test_holes_and_missing_faces_come_back():
     assert np.array_equal(decode_faces(points, record), faces)
 
 
+def test_any_one_face_may_be_missing():
+    """The first triangle and the last as well."""
+    points = scattered(40)
+    faces = faces_of(points)
+    for gone in range(len(faces)):
+        fewer = np.delete(faces, gone, axis=0)
+        assert np.array_equal(decode_faces(points, encode_faces(points, fewer)), fewer)
+
+
+def test_points_without_any_face_come_back():
+    points, none = scattered(40), np.empty((0, 3), dtype=np.int64)
+    assert decode_faces(points, encode_faces(points, none)).shape == (0, 3)
+
+
 def test_a_triangulation_that_is_not_delaunay_comes_back():
     points = scattered()
     squeezed = points * np.array([1, 7])

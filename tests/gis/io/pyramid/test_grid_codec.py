@@ -1,5 +1,7 @@
 """A raster's numbers come back from their residuals, whatever they are and wherever holes lie."""
 
+import hashlib
+
 import numpy as np
 import pytest
 from gis.samples import hills
@@ -50,6 +52,14 @@ def test_floats_that_are_decimals_are_found(values, divisor):
     assert values_of(numbers.integers, values.dtype, divisor).tobytes() == values.tobytes()
 
 
+@pytest.mark.parametrize(
+    "divisor", [1, 2, 4, 8, 10, 16, 20, 32, 64, 100, 128, 256, 512, 1000, 1024]
+)
+def test_steps_of_any_usual_size_are_found(divisor):
+    values = (np.arange(-3000, 3000) / divisor).astype("f8")
+    assert integers_of(values).divisor == divisor
+
+
 def test_floats_of_which_few_differ_have_a_palette():
     rng = np.random.default_rng(3)
     thirds = rng.integers(-60, 60, 4000) / 3.0
@@ -73,6 +83,27 @@ def test_smooth_terrain_has_small_residuals():
     assert residuals.numbers.dtype == np.uint8
     along_rows = np.abs(np.diff(values, axis=1)).mean()
     assert residuals.numbers.astype(float).mean() / 2 < along_rows
+
+
+def test_of_a_large_raster_one_order_alone_is_tried(monkeypatch):
+    values = np.rint(hills(40, 40) * 20).astype(np.int64)
+    valid = np.ones(values.shape, dtype=bool)
+    monkeypatch.setattr("wavelet_gis.io.pyramid.codecs.grid_codec.MOST_TRIED", 1000)
+    residuals = encode_grid(values.ravel(), valid)
+    assert np.array_equal(decode_grid(residuals, valid), values.ravel())
+    assert len(residuals.classes) == 0
+
+
+@pytest.mark.parametrize(("every", "expected"), [(1, "aad67cac484cb6c0"), (3, "20861d8ec466eba5")])
+def test_residuals_are_what_they_were(every, expected):
+    """What writer and reader change alike comes back, and yet reads no file of before."""
+    rows, columns = np.arange(37)[:, None], np.arange(53)[None, :]
+    values = (rows * rows // 3 + columns * (rows % 7) - (columns * columns) // 5) % 1000
+    valid = (rows * columns) % every == 0
+    residuals = encode_grid(values[valid], np.broadcast_to(valid, values.shape))
+    digest = hashlib.sha256(residuals.numbers.tobytes() + residuals.beyond.tobytes())
+    digest.update(repr([int(count) for count in residuals.classes]).encode())
+    assert digest.hexdigest()[:16] == expected
 
 
 def test_either_order_is_read():
