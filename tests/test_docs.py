@@ -64,6 +64,7 @@ OF_OTHERS = {
     "--moves",
     "--no-deps",
     "--only",
+    "--output",
     "--page",
     "--peers",
     "--picture",
@@ -71,6 +72,7 @@ OF_OTHERS = {
     "--read",
     "--real",
     "--system-site-packages",
+    "--table",
     "--tree",
     "--user",
 }
@@ -121,6 +123,7 @@ def write_breaklines(folder):
 def test_commands_of_how_to_pages_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write_tif(tmp_path / "dem.tif", hills(40, 50))
+    write_tif(tmp_path / "earlier.tif", hills(40, 50, seed=1))
     write_las(tmp_path / "cloud.laz", 3000)
     write_breaklines(tmp_path)
     made = "analyse dem.tif dem.gpkg --partition random --prediction plane --quiet"

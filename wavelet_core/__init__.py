@@ -15,6 +15,7 @@ from .errors import (
     WaveletError,
     WaveletWarning,
 )
+from .features.ground import ground_points
 from .features.landforms import LANDFORMS, landforms
 from .features.scale_maps import (
     ScaleMaps,
@@ -106,6 +107,7 @@ __all__ = [
     "estimate_noise",
     "finished",
     "fitted",
+    "ground_points",
     "heights_above_lows",
     "heights_above_means",
     "joined_levels",

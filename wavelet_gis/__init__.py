@@ -27,10 +27,12 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.extract import Surface, extract
     from wavelet_gis.workflows.filtering import Filtered
     from wavelet_gis.workflows.filtering import filter_pyramid as filter
+    from wavelet_gis.workflows.ground import ClassifiedGround, classify_ground
     from wavelet_gis.workflows.learning.cluster import Labelled, classify, cluster
     from wavelet_gis.workflows.learning.labels import labels_from_las, labels_from_layer
     from wavelet_gis.workflows.open import load
     from wavelet_gis.workflows.open import open_data as open
+    from wavelet_gis.workflows.read_off.change import ChangeByScale, change_by_scale
     from wavelet_gis.workflows.read_off.contours import Contours, contours
     from wavelet_gis.workflows.read_off.difference import Difference, difference
     from wavelet_gis.workflows.read_off.profile import Profile, profile
@@ -41,6 +43,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Analysis",
+    "ChangeByScale",
+    "ClassifiedGround",
     "Contours",
     "Details",
     "Difference",
@@ -55,7 +59,9 @@ __all__ = [
     "Tiled",
     "Tileset",
     "analyse",
+    "change_by_scale",
     "classify",
+    "classify_ground",
     "cluster",
     "contours",
     "details",
@@ -94,6 +100,8 @@ _HOMES = {
     "Tiled": "tiles.tile:Tiled",
     "Tileset": "tiles.globe.tileset:Tileset",
     "analyse": "workflows.analyse:analyse",
+    "ChangeByScale": "workflows.read_off.change:ChangeByScale",
+    "change_by_scale": "workflows.read_off.change:change_by_scale",
     "Contours": "workflows.read_off.contours:Contours",
     "Difference": "workflows.read_off.difference:Difference",
     "LevelQuality": "workflows.read_off.quality:LevelQuality",
@@ -103,7 +111,9 @@ _HOMES = {
     "mesh_quality": "workflows.read_off.quality:mesh_quality",
     "profile": "workflows.read_off.profile:profile",
     "profile_page": "report.profile_plot:profile_page",
+    "ClassifiedGround": "workflows.ground:ClassifiedGround",
     "classify": "workflows.learning.cluster:classify",
+    "classify_ground": "workflows.ground:classify_ground",
     "cluster": "workflows.learning.cluster:cluster",
     "details": "workflows.details:details",
     "extract": "workflows.extract:extract",

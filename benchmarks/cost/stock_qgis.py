@@ -115,6 +115,7 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
         "thinpointcloud",
         {"INPUT": "{las}", "MAX_ERROR": 0.5, "THINNED": "{out}.las"},
     ),
+    "Classify ground": ("classifyground", {"INPUT": "{las}", "OUTPUT": "{out}.las"}),
     "Contours of level": (
         "contours",
         {"INPUT": "{pyramid}", "INTERVAL": 2.0, "OUTPUT": "memory:"},

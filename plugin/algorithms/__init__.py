@@ -6,6 +6,7 @@ Their ids, parameters and outputs are public: models and scripts store them. Non
 from .analyse_dem import AnalyseDem
 from .analyse_point_cloud import AnalysePointCloud
 from .analyse_tin import AnalyseTin
+from .classify_ground import ClassifyGround
 from .cluster_details import ClusterDetails
 from .contours import Contours
 from .detail_layers import DetailLayers
@@ -30,6 +31,7 @@ ALGORITHMS = (
     SimplifyDem,
     SimplifyPointCloud,
     ThinPointCloud,
+    ClassifyGround,
     ExtractLevel,
     Reconstruct,
     WebTerrain,

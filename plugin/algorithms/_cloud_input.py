@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -31,7 +31,7 @@ from ..ui.translation import tr
 from ._cloud_source import CloudSource, cloud_source
 
 if TYPE_CHECKING:
-    from wavelet_gis.crs.frame import Georeference
+    from wavelet_gis.crs.frame import CoordinateSystem, Georeference
     from wavelet_gis.model.points.cloud import PointCloud
     from wavelet_gis.model.terrain import Terrain
     from wavelet_gis.workflows.options import WaveletOptions
@@ -55,8 +55,8 @@ class CloudInput(TerrainWaveletsAlgorithm):
     #: Whether the points of the ground alone are taken where no classes are named and it has some.
     TAKES_GROUND: ClassVar[bool] = False
 
-    def add_cloud_parameters(self) -> None:
-        """Declare INPUT and what is taken of it."""
+    def add_input_parameter(self) -> None:
+        """Declare INPUT."""
         parameter = QgsProcessingParameterFile("INPUT", tr("Point cloud"))
         parameter.setFileFilter("")  # with one, QGIS refuses the names of layers
         parameter.setMetadata(file_widget("CloudWrapper"))
@@ -68,6 +68,18 @@ class CloudInput(TerrainWaveletsAlgorithm):
                 "QGIS is needed."
             ),
         )
+
+    def add_crs_parameter(self) -> None:
+        """Declare CRS."""
+        self.add(
+            QgsProcessingParameterCrs("CRS", tr("CRS of the points"), optional=True),
+            tr("Instead of the CRS in the file, or where it has none."),
+            advanced=True,
+        )
+
+    def add_cloud_parameters(self) -> None:
+        """Declare INPUT and what is taken of it."""
+        self.add_input_parameter()
         self.add(
             QgsProcessingParameterEnum(
                 "ATTRIBUTES",
@@ -111,11 +123,7 @@ class CloudInput(TerrainWaveletsAlgorithm):
             advanced=True,
         )
         self._add_surface_parameters()
-        self.add(
-            QgsProcessingParameterCrs("CRS", tr("CRS of the points"), optional=True),
-            tr("Instead of the CRS in the file, or where it has none."),
-            advanced=True,
-        )
+        self.add_crs_parameter()
 
     def _add_surface_parameters(self) -> None:
         self.add(
@@ -177,36 +185,60 @@ class CloudInput(TerrainWaveletsAlgorithm):
         if self.source.fault is not None:
             raise QgsProcessingException(self.source.fault)
 
-    def terrain(self, request: Request) -> Terrain:
-        """Return the terrain in the file."""
-        from wavelet_gis.io.las import read_cloud
-        from wavelet_gis.model.terrain import terrain_of_cloud
+    def read_points(self, request: Request, **options: Any) -> tuple[PointCloud, Georeference]:
+        """Return the points in the file, unpacked first where lazrs is missing.
 
-        from ..qgis_io.crs_and_progress import coordinate_system
+        Parameters
+        ----------
+        request : Request
+        **options
+            See `wavelet_gis.io.las.read_cloud`.
+        """
+        from wavelet_gis.io.las import read_cloud
+
         from ..qgis_io.laz_unpacker import as_las
 
         path = self.source.path
         request.stage(tr("Reading the points"))
-        attributes = [*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")]
-        classes, carry = self._classes(request), request.flag("CARRY")
-        takes_ground = self.TAKES_GROUND and classes is None
-        keep_noise, keep_withheld = request.flag("KEEP_NOISE"), request.flag("KEEP_WITHHELD")
-
-        def read(source: str) -> tuple[PointCloud, Georeference]:
-            return read_cloud(
-                source,
-                attributes=attributes,
-                classes=classes,
-                ground_first=takes_ground,
-                carry=carry,
-                keep_noise=keep_noise,
-                keep_withheld=keep_withheld,
-            )
-
         with as_las(path, request.feedback) as source:
             if source != path:
                 request.say(tr("Unpacked by QGIS's pdal_wrench, since lazrs is missing"))
-            cloud, place = request.computed(lambda work: read(source), 0.0, 0.05)
+            return request.computed(lambda work: read_cloud(source, **options), 0.0, 0.05)
+
+    def system_of(self, request: Request, place: Georeference) -> CoordinateSystem:
+        """Return the CRS of the points: that chosen, that of the layer, or that of the file."""
+        from ..qgis_io.crs_and_progress import coordinate_system
+
+        crs = request.crs("CRS")
+        if not crs.isValid():
+            crs = self.source.crs
+        if not crs.isValid() and place.wkt:
+            crs = QgsCoordinateReferenceSystem.fromWkt(place.wkt)
+            if not crs.isValid():
+                raise QgsProcessingException(
+                    tr("{}: QGIS does not understand the CRS in the file; choose one.").format(
+                        self.source.path
+                    )
+                )
+        return coordinate_system(crs)
+
+    def terrain(self, request: Request) -> Terrain:
+        """Return the terrain in the file."""
+        from wavelet_gis.model.terrain import terrain_of_cloud
+
+        path = self.source.path
+        attributes = [*request.choices("ATTRIBUTES"), *request.words("OTHER_ATTRIBUTES")]
+        classes = self._classes(request)
+        takes_ground = self.TAKES_GROUND and classes is None
+        cloud, place = self.read_points(
+            request,
+            attributes=attributes,
+            classes=classes,
+            ground_first=takes_ground,
+            carry=request.flag("CARRY"),
+            keep_noise=request.flag("KEEP_NOISE"),
+            keep_withheld=request.flag("KEEP_WITHHELD"),
+        )
         if takes_ground:
             request.say(
                 tr("Taken: the {} points of the ground (class 2), of {}").format(
@@ -215,18 +247,10 @@ class CloudInput(TerrainWaveletsAlgorithm):
                 if cloud.classes
                 else tr("Taken: all points, since none is classified as ground (class 2)")
             )
-        crs = request.crs("CRS")
-        if not crs.isValid():
-            crs = self.source.crs
-        if not crs.isValid() and place.wkt:
-            crs = QgsCoordinateReferenceSystem.fromWkt(place.wkt)
-            if not crs.isValid():
-                raise QgsProcessingException(
-                    tr("{}: QGIS does not understand the CRS in the file; choose one.").format(path)
-                )
         max_edge = request.number("MAX_EDGE")
         request.stage(tr("Triangulating {} points").format(cloud.n_points))
-        system, unit = coordinate_system(crs), vertical_unit(request) or place.vertical_unit
+        system = self.system_of(request, place)
+        unit = vertical_unit(request) or place.vertical_unit
         duplicates = request.text("DUPLICATES") or None
         concave = request.flag("CONCAVE")
 

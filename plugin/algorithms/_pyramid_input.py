@@ -57,9 +57,17 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
         return None
 
     def geo_pyramid(
-        self, request: Request, level: int | None = None, *, only_input: bool = False
+        self,
+        request: Request,
+        level: int | None = None,
+        *,
+        only_input: bool = False,
+        reading: float = READING,
     ) -> GeoPyramid:
-        """Return the pyramid in the file, or no more of it than has a level, or gives the input."""
+        """Return the pyramid in the file, or no more of it than has a level, or gives the input.
+
+        It takes the first `reading` of the bar.
+        """
         from wavelet_gis.io.pyramid.pyramid_file import read_input
         from wavelet_gis.workflows.open import load
 
@@ -72,7 +80,7 @@ class PyramidAlgorithm(TerrainWaveletsAlgorithm):
                 return read_input(path, work.progress)
             return load(path, level=level, progress=work.progress).geo
 
-        geo = request.computed(read, 0.0, READING)
+        geo = request.computed(read, 0.0, reading)
         request.begins_at(0.05)
         for line in geo.history:
             request.say(tr("Changed since its analysis: {}").format(line))

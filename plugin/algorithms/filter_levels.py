@@ -27,7 +27,7 @@ from ..parameters.restored_output import (
 from ..ui.enums import REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
-from ._pyramid_input import PyramidAlgorithm
+from ._pyramid_input import READING, PyramidAlgorithm
 
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -35,6 +35,9 @@ if TYPE_CHECKING:
 
     from ..qgis_io.background import Work
     from ..ui.dependencies import Package
+
+#: Part of the bar in which a pyramid is read before its noise is removed, which takes far longer.
+READING_BEFORE_DENOISING = 0.06
 
 
 class FilterLevels(PyramidAlgorithm):
@@ -175,7 +178,7 @@ class FilterLevels(PyramidAlgorithm):
         )
         self.add(
             QgsProcessingParameterNumber(
-                "PYRAMIDS", tr("Number of pyramids averaged"), WHOLE_NUMBER, 8, minValue=0
+                "PYRAMIDS", tr("Number of pyramids averaged"), WHOLE_NUMBER, 4, minValue=0
             ),
             tr(
                 "Pyramids in random order, each denoised, whose average leaves no traces of "
@@ -274,7 +277,8 @@ class FilterLevels(PyramidAlgorithm):
         """Filter, then write what was asked for."""
         from wavelet_gis.workflows.filtering import filter_pyramid
 
-        before = self.geo_pyramid(request)
+        reading = READING_BEFORE_DENOISING if request.flag("DENOISE") else READING
+        before = self.geo_pyramid(request, reading=reading)
         sigma = request.number("SIGMA_OF_NOISE")
         request.stage(tr("Filtering"))
         gains, levels = _gains(request), _levels(request, before)
@@ -309,12 +313,13 @@ class FilterLevels(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        filtered = request.computed(compute, 0.05, 0.69)
+        path = request.output_file("OUTPUT")
+        end = 0.69 if path else 0.84
+        filtered = request.computed(compute, 0.05, end)
         for line in filtered.changes:
             request.say(line)
-        request.figures = request.computed(lambda work: _figures(filtered), 0.69, 0.7)
+        request.figures = request.computed(lambda work: _figures(filtered), end, end + 0.01)
         results: Values = {}
-        path = request.output_file("OUTPUT")
         if path:
             request.stage(tr("Measuring the errors of every level"))
             geo = request.computed(

@@ -24,27 +24,27 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-#: Seconds between two looks at the button, and those without news after which the bar creeps on.
+#: Seconds between two looks at the button, and those without a step after which the clock makes
+#: one.
 LOOK, SILENCE = 0.1, 0.8
-#: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): what the clock
-#: adds at a time.
+#: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): a step.
 LEAST = 0.001
-#: How far, of a work's part, the clock may run ahead of what its pace so far lets expect; in narrow
-#: parts so many steps that are seen. Then it
-#: adds `PACE` of what that pace gives, or `TRICKLE` of what is left; before the first word more.
-AHEAD, STEPS_AHEAD, PACE, TRICKLE, FIRST_TRICKLE = 0.1, 8, 0.5, 0.0004, 0.01
-#: Share of what is left that the clock may take before the next word of the work; before the first
-#: word it may take all.
-LEAD = 0.5
+#: How far, of a work's part, the clock's steps may lead what was reported; in narrow parts so many
+#: steps that are seen.
+AHEAD, STEPS_AHEAD = 0.05, 8
+#: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
+#: more, before the first word and after it.
+STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.05, 0.01, 0.0002
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
-WORK_PART = 0.9
+WORK_PART = 0.98
 
 
 class Bar:
-    """Where the bar stands: moved by what a work reports, and by the clock while that is silent.
+    """Where the bar stands: it moves evenly, so that what is left of it lasts as long as the work.
 
-    The clock may have moved it further than the work has come. What is reported next then moves it
-    by its share of what is left, so that it never rests until the work has caught up.
+    What the work has reported, and when it began, say how long the rest will take; that grows while
+    the work is silent. In that time the bar runs through what is left of it, so that it neither
+    rests between two reports nor waits for the work to catch up.
 
     Parameters
     ----------
@@ -57,9 +57,9 @@ class Bar:
     def __init__(self, now: float, width: float = 1.0) -> None:
         self._least = LEAST / max(width, LEAST)
         self._ahead = max(AHEAD, STEPS_AHEAD * self._least)
-        self._shown, self._reported, self._goal = 0.0, 0.0, 1.0
+        self._shown, self._reported = 0.0, 0.0
         self._seen, self._moved = 0.0, now
-        self._began, self._word = now, now
+        self._began, self._looked = now, now
 
     def at(self, fraction: float, now: float) -> float:
         """Return where it stands, in [0, 1].
@@ -71,29 +71,25 @@ class Bar:
         now : float
             Seconds.
         """
-        reported = WORK_PART * min(fraction, 1.0)
-        if reported > self._reported:
-            share = (reported - self._reported) / (1.0 - self._reported)
-            self._shown += share * (1.0 - self._shown)
-            self._reported = reported
-            self._goal = self._shown + LEAD * (1.0 - self._shown)
-            self._word = now
+        self._reported = max(self._reported, WORK_PART * min(fraction, 1.0))
+        left = 1.0 - self._shown
+        if self._reported > 0.0:
+            remaining = (1.0 - self._reported) / self._reported * (now - self._began)
+            self._shown += left * min((now - self._looked) / max(remaining, LOOK), 1.0)
+        self._looked = now
         if now - self._moved > SILENCE:
-            self._shown += min(self._creep(now), 0.1 * (self._goal - self._shown))
+            self._shown += min(self._step(), STEP_OF_LEFT * left)
             self._moved = now
         if self._shown - self._seen >= self._least:
             self._seen, self._moved = self._shown, now
         return self._shown
 
-    def _creep(self, now: float) -> float:
-        """Return what the clock adds."""
-        left = self._goal - self._shown
-        if self._word == self._began:
-            return 1.01 * self._least if self._shown < self._ahead else FIRST_TRICKLE * left
-        pace = self._reported / (self._word - self._began)
-        if self._shown < pace * (now - self._began) + self._ahead:
+    def _step(self) -> float:
+        """Return what the clock adds where nothing new was seen for a while."""
+        if self._shown < self._reported + self._ahead:
             return 1.01 * self._least
-        return max(PACE * pace * (now - self._moved), TRICKLE * left)
+        trickle = TRICKLE if self._reported > 0.0 else FIRST_TRICKLE
+        return trickle * (1.0 - self._shown)
 
 
 class Work:

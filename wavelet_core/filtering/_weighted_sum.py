@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from .._validate import FloatArray
 from ..lifting.linear_map import LinearStep, Transform
 from ._bounded import least_within, moments_of
+from ._guided import LEAST_FOR_GUIDED, Moved, edge_kept
 from .noise.model import Noise
 from .noise.white import local_energy
-from .undecimated import UndecimatedBank
+from .undecimated import Rings, UndecimatedBank
 
 
 class Damping(NamedTuple):
@@ -75,6 +76,10 @@ MOST_PROBES = 8
 #: Ridge of the weights, relative to the mean energy of a column: it pulls towards no change.
 #: A hundredth of it and a hundred times as much give the same error to four digits.
 RIDGE = 1e-7
+#: How much of what keeps edges is taken where the noise differs by place, of which the estimates
+#: are rough. All of it leaves 7 % less error on a cloud and up to 4 % more on DEMs, half 6 % less
+#: and up to 1.5 % more, on twelve windows.
+SHARE_BY_PLACE = 0.5
 #: Columns smaller than this part of the values are rounding.
 ROUNDING = 1e-13
 
@@ -116,12 +121,20 @@ class WeightedSum:
         )
         n_bands = -(-levels // LEVELS_PER_BAND)
         self._of_pyramids = np.zeros((n, n_bands * OF_PYRAMIDS.n_elements))
+        # How all columns change along one probe, for what is then guided by their sum. What
+        # rounding leaves is alike in flat neighbours: no guide helps there.
+        n_guiding = 1 if n >= LEAST_FOR_GUIDED and noise.rounding.step == 0.0 else 0
+        self._guiding = noise.probes(np.random.default_rng((seed, 1)), (n, n_guiding))
+        self._changes_of_pyramids = np.zeros(
+            (n_guiding, *self._of_pyramids.shape), dtype=np.float32
+        )
         self._divergence = np.zeros(self._of_pyramids.shape[1])
         self.values, self.result = values, values.copy()
 
     def fit(self, transform: Transform, gains: list[FloatArray]) -> None:
         """Take in the details of one pyramid, and their divergence."""
-        shifted, probes = self._shifted(PROBED_BY_PYRAMIDS)
+        probes = self._probes(PROBED_BY_PYRAMIDS)
+        shifted = self._shifted(np.column_stack([self._guiding, probes]))
         details = transform.analyse(shifted)[1]
         damped = [
             _damped(step, detail, self._sigma * gain, transform.tick)
@@ -134,35 +147,56 @@ class WeightedSum:
             )
             where, band = _block(first), band.reshape(*shifted.shape, OF_PYRAMIDS.n_elements)
             self._of_pyramids[:, where] += self._share * band[:, 0]
+            self._changes_of_pyramids[..., where] += self._share * self._guiding_changes(band)
             self._divergence[where] += self._share * self._slope(band, probes)
 
-    def finish(self, bank: UndecimatedBank) -> None:
+    def finish(self, bank: UndecimatedBank, is_fixed: NDArray[np.bool_]) -> None:
         """Take in the details of all vertices, find the weights, and sum.
 
         Parameters
         ----------
         bank : UndecimatedBank
             Measured with noise of this kind.
+        is_fixed : ndarray of bool, shape (n_vertices,)
+            Vertices that have no details in the bank.
         """
-        n_of_pyramids = self._of_pyramids.shape[1]
+        column, changes = self._summed(bank)
+        del self._of_pyramids, self._changes_of_pyramids
+        for probe, change in zip(self._guiding.T, changes, strict=True):  # one, or none
+            relative = np.ones(1) if self.noise.relative is None else self.noise.relative
+            kept = edge_kept(
+                Rings(bank.averaging.indptr, bank.averaging.indices),
+                Moved(self._values, probe),
+                Moved(column, change),
+                self._sigma * relative,
+                is_fixed,
+                bank.tick,
+            )
+            column += (1.0 if self.noise.relative is None else SHARE_BY_PLACE) * (kept - column)
+        self.result += column - self._values
+
+    def _summed(self, bank: UndecimatedBank) -> tuple[FloatArray, FloatArray]:
+        """Return the weighted sum, and its changes along what guides, ``(0 or 1, n_vertices)``."""
+        n_of_pyramids, n_rows = self._of_pyramids.shape[1], min(len(self._values), MAX_FITTED)
         n_columns = n_of_pyramids + bank.n_scales * bank.n_parts * OF_VERTICES.n_elements
-        columns = np.empty((min(len(self._values), MAX_FITTED), n_columns))
+        columns, divergence = np.empty((n_rows, n_columns)), np.zeros(n_columns)
         columns[:, :n_of_pyramids] = self._of_pyramids[self._rows]
-        divergence = np.zeros(n_columns)
         divergence[:n_of_pyramids] = self._divergence
-        shifted, probes = self._shifted(PROBED_BY_VERTICES)
+        probes = self._probes(PROBED_BY_VERTICES)
+        shifted = self._shifted(probes)
         for where, damped in self._damped_by_vertices(bank, shifted):
             columns[:, where] = damped[self._rows, 0]
             divergence[where] = self._slope(damped, probes)
-        del shifted, probes
+        del shifted
         weights = self._weights(columns, divergence, bank.tick)
-        if len(columns) == len(self._values):
-            self.result += np.einsum("vk,k->v", columns, weights)
-            return
         del columns
-        self.result += np.einsum("vk,k->v", self._of_pyramids, weights[:n_of_pyramids])
-        for where, damped in self._damped_by_vertices(bank, self._values[:, None]):
-            self.result += np.einsum("vk,k->v", damped[:, 0], weights[where])
+        of_pyramids = weights[:n_of_pyramids]
+        column = self._values + np.einsum("vk,k->v", self._of_pyramids, of_pyramids)
+        changes = self._guiding.T + np.einsum("gvk,k->gv", self._changes_of_pyramids, of_pyramids)
+        for where, damped in self._damped_by_vertices(bank, self._shifted(self._guiding)):
+            column += np.einsum("vk,k->v", damped[:, 0], weights[where])
+            changes += np.einsum("gvk,k->gv", self._guiding_changes(damped), weights[where])
+        return column, changes
 
     def _weights(
         self, columns: FloatArray, divergence: FloatArray, tick: Callable[[], None]
@@ -217,20 +251,30 @@ class WeightedSum:
                 changes[is_open] = found
         return changes / size
 
-    def _shifted(self, n_wanted: int) -> tuple[FloatArray, FloatArray]:
-        """Return the column and itself moved a little along random probes, and the probes."""
+    def _probes(self, n_wanted: int) -> FloatArray:
+        """Return new random probes, so that the errors of what they probe are independent."""
         n = len(self._values)
-        shape = (n, max(1, min(MOST_PROBES, n_wanted // n)))
-        probes = self.noise.probes(self._generator, shape)
+        return self.noise.probes(self._generator, (n, max(1, min(MOST_PROBES, n_wanted // n))))
+
+    def _shifted(self, probes: FloatArray) -> FloatArray:
+        """Return the column, and itself moved a little along each probe."""
         moved = self._values[:, None] + PROBE_STEP * self._sigma * probes
-        return np.column_stack([self._values, moved]), probes
+        return np.column_stack([self._values, moved])
 
     def _slope(self, damped: FloatArray, probes: FloatArray) -> FloatArray:
-        """Return the divergence of columns: ``damped[:, 0]``, the others are the probes'."""
-        change = damped[:, 1:] - damped[:, :1]
-        slope = np.einsum("vp,vpk->k", probes, change) / probes.shape[1]
+        """Return the divergence of columns: ``damped[:, 0]``, the last are the probes'."""
+        n_probes = probes.shape[1]
+        change = damped[:, -n_probes:] - damped[:, :1]
+        slope = np.einsum("vp,vpk->k", probes, change) / n_probes
         slope /= PROBE_STEP * self._sigma
         return slope
+
+    def _guiding_changes(self, damped: FloatArray) -> FloatArray:
+        """Return how columns ``(n_vertices, k)`` change along what guides, which is the next."""
+        n_guiding = self._guiding.shape[1]
+        change = damped[:, 1 : 1 + n_guiding] - damped[:, :1]
+        change /= PROBE_STEP * self._sigma
+        return np.moveaxis(change, 1, 0)
 
     def _damped_by_vertices(
         self, bank: UndecimatedBank, columns: FloatArray

@@ -204,6 +204,17 @@ def _parts_of(
     yield rest
 
 
+def n_ticks(n_vertices: int, n_scales: int) -> int:
+    """Return how often a bank of so many scales ticks while it is made."""
+    n_directions = N_DIRECTIONS if n_vertices >= LEAST_FOR_DIRECTIONS else 0
+    of_scales = sum(
+        ROUNDS_OF_SCALE[scale] + n_directions + (n_directions + 1) + POOL_ROUNDS + scale
+        for scale in range(min(n_scales, len(ROUNDS_OF_SCALE)))
+    )
+    n_blocks = -(-n_vertices // FITTED_AT_ONCE)
+    return 4 + n_blocks * (2 if n_directions else 1) + of_scales
+
+
 class Rings(NamedTuple):
     """Every vertex with its neighbours and itself, in the rows of a sparse matrix.
 

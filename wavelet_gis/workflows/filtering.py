@@ -20,6 +20,7 @@ from wavelet_core import (
     level_spacings,
     relifted,
 )
+from wavelet_core.filtering.denoise import N_PYRAMIDS
 from wavelet_core.filtering.gains import channel_index, require_order
 from wavelet_core.filtering.noise.model import Noise, RangeOption
 from wavelet_core.filtering.noise.white import estimate_noise
@@ -45,8 +46,6 @@ __all__ = [
     "with_sizes",
 ]
 
-#: How many pyramids in random order denoising averages.
-N_PYRAMIDS = 8
 #: By how much a level in random order is wider than the finer one, at least, and how many levels
 #: are built at most to reach a size.
 _GROWTH, _MOST_LEVELS = 1.08, 80
@@ -160,7 +159,7 @@ def filter_pyramid(
         Whether noise is taken out; a number is its standard deviation, in the input's unit, which
         is estimated otherwise.
     n_pyramids : int, optional
-        How many pyramids in random order are averaged, 8 by default; 0 thresholds the details of
+        How many pyramids in random order are averaged, 4 by default; 0 thresholds the details of
         one.
     channels : sequence of str, optional
         Which to take noise from; by default z.

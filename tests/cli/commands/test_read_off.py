@@ -73,6 +73,27 @@ def test_difference(folder, told, tmp_path):
         np.testing.assert_allclose(a.read(1), b.read(1), atol=1e-4)
 
 
+def test_change_since_an_earlier_survey(folder, told, tmp_path):
+    with rasterio.open(folder / "dem.tif") as dataset:
+        z, profile = dataset.read(1), dataset.profile
+    earlier = (0.9 * z - 3).astype(z.dtype)
+    with rasterio.open(tmp_path / "earlier.tif", "w", **profile) as dataset:
+        dataset.write(earlier, 1)
+    figures = told(
+        "difference", folder / "p.gpkg", tmp_path / "c.tif", "--since", tmp_path / "earlier.tif"
+    )
+    with rasterio.open(tmp_path / "c.tif") as raster:
+        change, *bands = raster.read().astype(float)
+        assert raster.descriptions == tuple(figures["band_names"])
+    assert len(bands) == len(figures["bands"]) >= 2
+    np.testing.assert_allclose(change, z.astype(float) - earlier, atol=1e-3)
+    np.testing.assert_allclose(np.sum(bands, axis=0), change, atol=1e-3)
+    for told_of, values in zip([figures, *figures["bands"]], [change, *bands], strict=True):
+        assert told_of["rms"] == pytest.approx(np.sqrt((values**2).mean()), abs=1e-4) != 0
+        assert told_of["lowest"] == pytest.approx(values.min(), abs=1e-4)
+        assert told_of["highest"] == pytest.approx(values.max(), abs=1e-4)
+
+
 def test_info_tells_of_triangles_when_asked(folder, told):
     assert "triangles" not in told("info", folder / "p.gpkg")
     rows = told("info", folder / "p.gpkg", "--triangles")["triangles"]
@@ -87,6 +108,8 @@ def test_info_tells_of_triangles_when_asked(folder, told):
         (["profile", "p.gpkg", "line.gpkg", "out.txt"], ".csv"),
         (["contours", "p.gpkg", "out.shp"], ".gpkg"),
         (["difference", "p.gpkg", "out.tif", "--level", "8"], "no level 8"),
+        (["difference", "p.gpkg", "out.tif", "--level", "0", "--since", "dem.tif"], "--level"),
+        (["difference", "p.gpkg", "out.tif", "--since", "p.gpkg"], "is a pyramid"),
     ],
 )
 def test_refusals_are_one_line_and_write_nothing(folder, capsys, arguments, why, monkeypatch):

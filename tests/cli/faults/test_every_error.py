@@ -82,9 +82,13 @@ HELD = {
         "largest_change": HERE + "test_what_a_filter_changes",
         "sigma.z": "core/filtering/test_noise_model.py::",
     },
-    "difference": dict.fromkeys(
-        ("mean", "rms", "lowest", "highest"), HERE + "test_differences_of_levels"
-    ),
+    "difference": {
+        **dict.fromkeys(("mean", "rms", "lowest", "highest"), HERE + "test_differences_of_levels"),
+        **dict.fromkeys(
+            ("bands[].rms", "bands[].lowest", "bands[].highest"),
+            "cli/commands/test_read_off.py::test_change_since_an_earlier_survey",
+        ),
+    },
     "profile": dict.fromkeys(
         (f"profiles[].{n}" for n in ("lowest", "highest", "rms_difference", "max_difference")),
         HERE + "test_profiles",
@@ -106,6 +110,7 @@ HELD = {
     "terrain": {"zooms[].max_error": GLOBE, "zooms[].n_uncovered": GLOBE, **_OF_MERGED},
     "details": {"levels[].largest": DETAILS, "levels[].rms": DETAILS},
     "cluster": {"clusters[].rms": DETAILS},
+    "classify": {},
     "contours": {},
     "reconstruct": {},
     "tile": {},  # what its index tells: test_second_opinion_tiles.py::test_the_errors_in_the_index
@@ -210,6 +215,8 @@ def test_every_error_that_is_told_is_listed(inputs, tmp_path, done):
         ("cluster", of_dem, "g.tif", "--count", 2),
         ("contours", of_dem, "c.gpkg"),
         ("difference", of_dem, "h.tif"),
+        ("difference", of_dem, "i.tif", "--since", dem),
+        ("classify", cloud, "a.las", "--ground", "--crs", UTM),
         ("profile", of_dem, folder / "line.gpkg", "a.csv"),
         ("report", of_cloud, "a.html"),
         ("view", of_dem, "b.html"),

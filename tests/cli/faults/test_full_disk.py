@@ -55,6 +55,7 @@ JOBS = [
     *[("profile", "dem", f"x{s}", "@line") for s in (".csv", ".gpkg", ".html", ".svg")],
     ("contours", "dem", "x.gpkg"),
     ("difference", "dem", "x.tif"),
+    *[("classify", "points", f"x{s}", "--ground") for s in (".las", ".laz")],
     ("analyse", "input", "x.gpkg", "--levels", "1"),
     ("analyse", "points", "x.gpkg", "--levels", "1"),
     *[("simplify", "input", f"x{s}", "--vertices", "3000") for s in (".tif", *MESHES)],

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
 from wavelet_core import TriangleMesh
-from wavelet_core.filtering.undecimated import LEAST_FOR_DIRECTIONS, UndecimatedBank
+from wavelet_core.filtering.undecimated import LEAST_FOR_DIRECTIONS, UndecimatedBank, n_ticks
 
 
 def scattered(n=LEAST_FOR_DIRECTIONS, seed=0):
@@ -89,3 +90,15 @@ def test_points_on_a_line_and_alone_are_finite():
     for details in details_of(bank, columns):
         assert np.isfinite(details).all()
         assert abs(details[6]).max() < 1e-12
+
+
+@pytest.mark.parametrize("n", [500, 5_000, 45_000])
+@pytest.mark.parametrize("n_scales", [1, 4, 8, 12])
+def test_the_ticks_of_a_bank_are_known_before(n, n_scales):
+    """The bar of QGIS stood still where more had been expected."""
+    plan = np.random.default_rng(0).random((n, 2))
+    mesh = TriangleMesh(np.column_stack([plan, plan[:, 0]]), Delaunay(plan).simplices)
+    ticks = []
+    noise = np.random.default_rng(1).standard_normal((n, 2))
+    UndecimatedBank.from_mesh(mesh, n_scales, noise, tick=lambda: ticks.append(1))
+    assert len(ticks) == n_ticks(n, n_scales)

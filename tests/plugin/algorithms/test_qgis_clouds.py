@@ -76,6 +76,24 @@ def test_the_surface_through_thinned_points_is_as_accurate_as_was_asked(run, clo
     assert made["N_THINNED"] == len(after.points) < 0.5 * len(ground)
 
 
+def test_ground_is_classified_and_all_else_stays(run, tmp_path):
+    xyz = survey(3000)
+    is_house = (abs(xyz[:, :2] - xyz[:, :2].mean(axis=0)) < 40).all(axis=1)
+    xyz[:, 2] = 0.02 * (xyz[:, 0] - xyz[0, 0]) + 25.0 * is_house
+    cloud = write_las(tmp_path / "in.las", xyz, intensity=np.arange(3000) % 500)
+    log, out = Log(), str(tmp_path / "out.las")
+    made = run(
+        "classifyground", {"INPUT": cloud, "LARGEST_OBJECT": 120.0, "OUTPUT": out}, feedback=log
+    )
+    before, after = laspy.read(cloud), laspy.read(out)
+    assert np.mean(after["classification"] == np.where(is_house, 1, 2)) > 0.999
+    before["classification"][:] = after["classification"]
+    assert rows(after) == rows(before)
+    assert made["N_GROUND"] == np.count_nonzero(after["classification"] == 2)
+    assert made["N_POINTS"] == 3000
+    assert any(f"{made['N_GROUND']} of 3000 points are ground" in line for line in log.lines)
+
+
 def _has_lazrs():
     from importlib.util import find_spec
 

@@ -23,6 +23,7 @@ ALGORITHMS = (
     "qualityreport",
     "simplifypointcloud",
     "thinpointcloud",
+    "classifyground",
     "webterrain",
     "contours",
     "profile",

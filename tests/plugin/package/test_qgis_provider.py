@@ -9,6 +9,7 @@ IDS = {
     "analysedem",
     "analysepointcloud",
     "analysetin",
+    "classifyground",
     "clusterdetails",
     "detaillayers",
     "difference",

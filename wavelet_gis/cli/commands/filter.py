@@ -97,7 +97,7 @@ def _add_noise(noise: argparse._ArgumentGroup) -> None:
         dest="n_pyramids",
         type=int,
         metavar="N",
-        help="average over so many pyramids in random order (default 8); 0: threshold the "
+        help="average over so many pyramids in random order (default 4); 0: threshold the "
         "details of a single one, which is quick and leaves traces of its triangles",
     )
     noise.add_argument(

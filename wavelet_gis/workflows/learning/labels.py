@@ -22,6 +22,7 @@ __all__ = [
     "labels_from_las",
     "labels_from_layer",
     "merge_labels",
+    "with_classes",
 ]
 
 IntArray = NDArray[np.int64]
@@ -66,9 +67,7 @@ def labels_from_las(geo: GeoPyramid, unlabelled: Sequence[int] = UNLABELLED) -> 
         classes = np.rint(mesh.attributes[:, column]).astype(np.int64)
     else:
         raise OptionError(
-            "the pyramid does not hold the classes of its points; analyse the file again, with "
-            "{0}.",
-            "carry",
+            "the classes of the points were not kept; read the file again, with {0}.", "carry"
         )
     classes[np.isin(classes, list(unlabelled))] = NOT_KNOWN
     return classes
@@ -164,6 +163,24 @@ def cloud_with_classes(
         own = _point_classes(cloud)[source.dropped]
         is_known = ~np.isin(own, list(unlabelled))
         of_point[source.dropped[is_known]] = merge_labels(own, merges)[is_known]
+    return with_classes(cloud, of_point)
+
+
+def with_classes(cloud: PointCloud, of_point: IntArray) -> PointCloud:
+    """Return a cloud whose points have other classes.
+
+    Parameters
+    ----------
+    cloud : PointCloud
+        Which holds classes, lifted or carried.
+    of_point : (n_points,) int64
+        Below 0: the class stays.
+
+    Raises
+    ------
+    OptionError
+        The classes were dropped, or one is above what the point format holds.
+    """
     changed = of_point >= 0
     if "raw_classification" in cloud.carried:
         stored = cloud.carried["raw_classification"].copy()
@@ -179,9 +196,7 @@ def cloud_with_classes(
         cloud = replace(cloud, carried={**cloud.carried, "classification": stored})
     elif not any(a.dimension == "classification" for a in cloud.attributes):
         raise OptionError(
-            "the pyramid does not hold the classes of its points; analyse the file again, with "
-            "{0}.",
-            "carry",
+            "the classes of the points were not kept; read the file again, with {0}.", "carry"
         )
     attributes = []
     for attribute in cloud.attributes:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from wavelet_gis.crs.frame import CoordinateSystem, vertical_unit_name
-from wavelet_gis.errors import CrsError
+from wavelet_gis.errors import CrsError, InputFileError
 from wavelet_gis.io.formats import EPT, is_cloud
 from wavelet_gis.io.las.ept import nodes_within, read_ept
 from wavelet_gis.io.names import files_of, joint_name, readable
 from wavelet_gis.model.attributes.categories import one_channel_per_category
+from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import Terrain, terrain_of_cloud, terrain_of_dem
 from wavelet_gis.workflows.opening.input_options import (
     CLOUD,
@@ -20,7 +21,7 @@ from wavelet_gis.workflows.opening.input_options import (
     system_given,
 )
 
-__all__ = ["open_terrain"]
+__all__ = ["ReadPoints", "open_points", "open_terrain"]
 
 Path = str | os.PathLike[str]
 
@@ -90,36 +91,84 @@ def open_terrain(
         "bbox": bbox,
         "resolution": resolution,
     }
-    of_surface = {"duplicates": duplicates, "max_edge": max_edge, "concave": concave}
+    of_surface: dict[str, Any] = {
+        "duplicates": duplicates,
+        "max_edge": max_edge,
+        "concave": concave,
+    }
     name = readable(joint_name(files))
     if is_cloud(files[0]):
         require_meaning(name, CLOUD, {"band": band, "nodata": nodata})
-        wkt = None
-        if os.path.basename(files[0]) == EPT and not files[1:]:
-            ept = read_ept(files[0])
-            files, of_reading["resolution"] = nodes_within(ept, bbox, resolution), None
-            wkt = ept.wkt
-        return _terrain_of_las(
-            name, files, override, vertical_unit, of_reading, of_surface, class_channels, wkt
+        read = _read_points(name, files, override, vertical_unit, of_reading)
+        cloud = one_channel_per_category(read.cloud) if class_channels else read.cloud
+        return terrain_of_cloud(
+            name, cloud, read.system, read.vertical_unit, fault=read.fault, **of_surface
         )
     require_meaning(name, RASTER, {**of_reading, **of_surface, "class_channels": class_channels})
     return _terrain_of_raster(name, files, override, vertical_unit, of_raster)
 
 
-def _terrain_of_las(
+class ReadPoints(NamedTuple):
+    """Points as their files have them.
+
+    name : str, for messages
+    cloud : PointCloud
+    system : CoordinateSystem
+    vertical_unit : str or None
+    fault : str, why there is no CRS
+    """
+
+    name: str
+    cloud: PointCloud
+    system: CoordinateSystem
+    vertical_unit: str | None
+    fault: str
+
+
+def open_points(
+    path: Path | Sequence[Path],
+    *,
+    crs: str | None = None,
+    vertical_unit: str | None = None,
+    **of_reading: Any,
+) -> ReadPoints:
+    """Return the points of one LAS file or of several, without making a surface of them.
+
+    Parameters
+    ----------
+    path, crs, vertical_unit
+        See `open_terrain`.
+    **of_reading
+        See `wavelet_gis.io.las.read_cloud`.
+
+    Raises
+    ------
+    InputFileError
+        No point cloud, or one that cannot be read.
+    """
+    files = files_of(path)
+    name = readable(joint_name(files))
+    if not is_cloud(files[0]):
+        raise InputFileError(f"{name}: this is no point cloud; name LAS, LAZ or COPC files.")
+    return _read_points(name, files, system_given(crs), vertical_unit, of_reading)
+
+
+def _read_points(
     name: str,
     files: Sequence[str],
     override: CoordinateSystem | None,
     vertical_unit: str | None,
     of_reading: dict[str, Any],
-    of_surface: dict[str, Any],
-    class_channels: bool,
-    wkt: str | None,
-) -> Terrain:
-    """Return the terrain of points; ``wkt`` is the CRS where the files themselves have none."""
+) -> ReadPoints:
     from wavelet_gis.crs.lookup import coordinate_system
     from wavelet_gis.io.las import read_cloud, read_clouds
 
+    wkt = None
+    if os.path.basename(files[0]) == EPT and not files[1:]:
+        ept = read_ept(files[0])
+        files = nodes_within(ept, of_reading.get("bbox"), of_reading.get("resolution"))
+        of_reading = {**of_reading, "resolution": None}
+        wkt = ept.wkt  # where the files themselves have none
     cloud, place = (
         read_clouds(
             files, any_crs=override is not None, any_unit=vertical_unit is not None, **of_reading
@@ -127,11 +176,8 @@ def _terrain_of_las(
         if files[1:]
         else read_cloud(files[0], **of_reading)
     )
-    if class_channels:
-        cloud = one_channel_per_category(cloud)
     system = override or coordinate_system(place.wkt or wkt)
-    unit = vertical_unit or place.vertical_unit
-    return terrain_of_cloud(name, cloud, system, unit, fault=place.fault, **of_surface)
+    return ReadPoints(name, cloud, system, vertical_unit or place.vertical_unit, place.fault)
 
 
 def _terrain_of_raster(

@@ -1,6 +1,6 @@
 """What the spectra add to the classification of LiDAR points, and a ground filter beside it.
 
-Usage: python benchmarks/quality/classify.py [--data FOLDER] [--output FILE.json] [--rows N]
+Usage: python benchmarks/quality/classes/classify.py [--data FOLDER] [--output FILE.json] [--rows N]
 
 Three clouds with real classes, ground, vegetation (or, in AHN, "other") and building. Folds are
 blocks of the map (the tiles themselves for the IGN tiles). Each set of features is learned and
@@ -216,7 +216,7 @@ def _three(figures) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    here = Path(__file__).resolve().parents[2]
+    here = Path(__file__).resolve().parents[3]
     parser.add_argument("--data", type=Path, default=here.parent / "shared" / "data")
     parser.add_argument("--output", type=Path)
     parser.add_argument("--rows", type=int, default=60_000, help="judged in each cloud")
