@@ -20,6 +20,7 @@ import rasterio
 from scipy import ndimage
 
 from wavelet_core import TriangleMesh, analyse, denoise
+from wavelet_core.filtering.denoise import N_PYRAMIDS
 from wavelet_core.filtering.noise.white import estimate_noise
 
 #: file, first row and column of a window of 400 x 400 cells, cell size and noise in metres
@@ -147,7 +148,7 @@ def row(path, top, left, cell, sigma, n_pyramids, only_ours):
     mesh = mesh_of(noisy, cell)
     one = analyse(mesh, partition="random", prediction="plane").denoised(sigma).synthesise()
     figures["one pyramid, BayesShrink"] = rmse(one.vertices[:, 2], clean.ravel()), ""
-    for count in sorted({8, n_pyramids}):
+    for count in sorted({N_PYRAMIDS, n_pyramids}):
         begin = process_time()
         result = denoise(mesh, sigma, n_pyramids=count)
         seconds = process_time() - begin

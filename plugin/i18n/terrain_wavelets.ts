@@ -524,6 +524,101 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>All points, with all their dimensions. LAZ needs the Python package lazrs.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Classified point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Classify ground</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Height tolerance</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>LAS (*.las);;LAZ (*.laz)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>LAS, LAZ or COPC file to the same with its ground points marked</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Largest object</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Least slope</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Looking for the ground among {} points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Marks the ground points of a LAS, LAZ or COPC file, from their heights alone and without training: what stands above the lows around it, at any scale, by more than the slope of the ground explains, is no ground. The ground gets class 2, all else 1; noise and withheld points keep their class, and nothing but classes is changed.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Points</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Points of the ground</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Points so far above or below the ground's surface are part of it, in metres.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Rise over run that the ground may have everywhere; on slopes more, by itself. Larger values keep more banks and let more low things through.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Width of the largest building, in metres; wider ones are taken for ground.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Writing {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>ground,ground filter,classify,classification,bare earth,dtm,smrf,csf,las,laz,lidar,point cloud,vegetation,buildings</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>the classified point cloud</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>{} of {} points are ground</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>&lt;i&gt;kmeans&lt;/i&gt;, or a &lt;i&gt;mixture&lt;/i&gt; of Gaussians of different size and shape.</source>
     <translation type="unfinished"></translation>
@@ -1680,11 +1775,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>Writing {}</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
     <source>synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original</source>
     <translation type="unfinished"></translation>
   </message>
@@ -1941,11 +2031,6 @@
   <message>
     <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
     <source>Gives the TIN of a number of vertices, or the TIN that is accurate enough, of the ground points of a LAS, LAZ or COPC file, and the points of the file that carry it: few on plains, many on banks. Give one of three: the number of vertices, the largest error, or the root mean square error; with none, a twentieth of the points stay.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
-    <source>LAS (*.las);;LAZ (*.laz)</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

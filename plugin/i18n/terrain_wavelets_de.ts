@@ -524,6 +524,101 @@
     <translation>tin,punkte,dreiecke,triangulieren,bruchkanten,vermessung,points,triangles,triangulate,delaunay,breaklines,survey,pyramide,pyramid,wavelet,multiresolution,analyze</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>All points, with all their dimensions. LAZ needs the Python package lazrs.</source>
+    <translation>Alle Punkte, mit allen ihren Dimensionen. LAZ braucht das Python-Paket lazrs.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Classified point cloud</source>
+    <translation>Klassifizierte Punktwolke</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Classify ground</source>
+    <translation>Boden klassifizieren</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Height tolerance</source>
+    <translation>Höhentoleranz</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>LAS (*.las);;LAZ (*.laz)</source>
+    <translation>LAS (*.las);;LAZ (*.laz)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>LAS, LAZ or COPC file to the same with its ground points marked</source>
+    <translation>LAS-, LAZ- oder COPC-Datei zu derselben mit gekennzeichneten Bodenpunkten</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Largest object</source>
+    <translation>Größtes Objekt</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Least slope</source>
+    <translation>Kleinste Neigung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Looking for the ground among {} points</source>
+    <translation>Suche den Boden unter {} Punkten</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Marks the ground points of a LAS, LAZ or COPC file, from their heights alone and without training: what stands above the lows around it, at any scale, by more than the slope of the ground explains, is no ground. The ground gets class 2, all else 1; noise and withheld points keep their class, and nothing but classes is changed.</source>
+    <translation>Kennzeichnet die Bodenpunkte einer LAS-, LAZ- oder COPC-Datei, allein nach ihren Höhen und ohne Training: Was auf irgendeiner Skala weiter über den tiefsten Stellen ringsum steht, als es die Neigung des Bodens erklärt, ist kein Boden. Der Boden erhält Klasse 2, alles andere 1; Rauschen und zurückgehaltene Punkte behalten ihre Klasse, und nur Klassen werden geändert.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Points</source>
+    <translation>Punkte</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Points of the ground</source>
+    <translation>Punkte des Bodens</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Points so far above or below the ground's surface are part of it, in metres.</source>
+    <translation>Punkte, die so weit über oder unter der Bodenoberfläche liegen, gehören noch dazu, in Metern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Rise over run that the ground may have everywhere; on slopes more, by itself. Larger values keep more banks and let more low things through.</source>
+    <translation>Steigung (Höhe durch Länge), die der Boden überall haben darf; an Hängen von selbst mehr. Größere Werte behalten mehr Böschungen und lassen mehr Niedriges durch.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Width of the largest building, in metres; wider ones are taken for ground.</source>
+    <translation>Breite des größten Gebäudes, in Metern; breitere gelten als Boden.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>Writing {}</source>
+    <translation>Schreiben: {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>ground,ground filter,classify,classification,bare earth,dtm,smrf,csf,las,laz,lidar,point cloud,vegetation,buildings</source>
+    <translation>Boden,Bodenfilter,klassifizieren,Klassifizierung,Gelände,DGM,SMRF,CSF,LAS,LAZ,LiDAR,Punktwolke,Vegetation,Gebäude</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>the classified point cloud</source>
+    <translation>die klassifizierte Punktwolke</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/classify_ground.py"/>
+    <source>{} of {} points are ground</source>
+    <translation>{} von {} Punkten sind Boden</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>&lt;i&gt;kmeans&lt;/i&gt;, or a &lt;i&gt;mixture&lt;/i&gt; of Gaussians of different size and shape.</source>
     <translation>&lt;i&gt;kmeans&lt;/i&gt;, oder eine Mischung (&lt;i&gt;mixture&lt;/i&gt;) von Gauß-Verteilungen verschiedener Größe und Form.</translation>
@@ -1680,11 +1775,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/reconstruct.py"/>
-    <source>Writing {}</source>
-    <translation>Schreiben: {}</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/reconstruct.py"/>
     <source>synthesis,inverse,dem,las,laz,tin,wavelet,pyramid,original</source>
     <translation>synthese,umkehrung,wiederherstellen,synthesis,inverse,dgm,dem,las,laz,tin,wavelet,pyramide,pyramid,original</translation>
   </message>
@@ -1942,11 +2032,6 @@
     <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
     <source>Gives the TIN of a number of vertices, or the TIN that is accurate enough, of the ground points of a LAS, LAZ or COPC file, and the points of the file that carry it: few on plains, many on banks. Give one of three: the number of vertices, the largest error, or the root mean square error; with none, a twentieth of the points stay.</source>
     <translation>Gibt das TIN mit einer Anzahl von Punkten, oder das TIN, das genau genug ist, aus den Bodenpunkten einer LAS-, LAZ- oder COPC-Datei, und die Punkte der Datei, die es tragen: wenige in Ebenen, viele an Böschungen. Geben Sie eines von dreien: die Anzahl der Punkte, den größten Fehler oder den mittleren quadratischen Fehler; ohne Angabe bleibt ein Zwanzigstel der Punkte.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
-    <source>LAS (*.las);;LAZ (*.laz)</source>
-    <translation>LAS (*.las);;LAZ (*.laz)</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/simplify_point_cloud.py"/>
