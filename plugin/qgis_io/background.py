@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 #: Seconds between two looks at the button, and those without a step after which the clock makes
-#: one.
-LOOK, SILENCE = 0.1, 0.8
+#: one. Short work has room for more of them, and some of its calls hold the interpreter for half a
+#: second.
+LOOK, SILENCE, EARLY_SILENCE, EARLY = 0.1, 0.8, 0.5, 30.0
 #: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): a step.
 LEAST = 0.001
 #: How far, of a work's part, the clock's steps may lead what was reported; in narrow parts so many
@@ -77,7 +78,8 @@ class Bar:
             remaining = (1.0 - self._reported) / self._reported * (now - self._began)
             self._shown += left * min((now - self._looked) / max(remaining, LOOK), 1.0)
         self._looked = now
-        if now - self._moved > SILENCE:
+        silence = EARLY_SILENCE if now - self._began < EARLY else SILENCE
+        if now - self._moved > silence:
             self._shown += min(self._step(), STEP_OF_LEFT * left)
             self._moved = now
         if self._shown - self._seen >= self._least:
