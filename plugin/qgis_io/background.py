@@ -35,7 +35,7 @@ LEAST = 0.001
 AHEAD, STEPS_AHEAD = 0.05, 8
 #: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
 #: more, before the first word and after it.
-STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.05, 0.01, 0.0002
+STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.1, 0.01, 0.0002
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
 WORK_PART = 0.98
 
