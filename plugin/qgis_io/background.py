@@ -25,9 +25,8 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 #: Seconds between two looks at the button, and those without a step after which the clock makes
-#: one. Short work has room for more of them, and some of its calls hold the interpreter for half a
-#: second.
-LOOK, SILENCE, EARLY_SILENCE, EARLY = 0.1, 0.8, 0.5, 30.0
+#: one.
+LOOK, SILENCE = 0.1, 0.8
 #: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): a step.
 LEAST = 0.001
 #: How far, of a work's part, the clock's steps may lead what was reported; in narrow parts so many
@@ -35,7 +34,7 @@ LEAST = 0.001
 AHEAD, STEPS_AHEAD = 0.05, 8
 #: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
 #: more, before the first word and after it.
-STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.1, 0.01, 0.0002
+STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.05, 0.01, 0.0002
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
 WORK_PART = 0.98
 
@@ -78,8 +77,7 @@ class Bar:
             remaining = (1.0 - self._reported) / self._reported * (now - self._began)
             self._shown += left * min((now - self._looked) / max(remaining, LOOK), 1.0)
         self._looked = now
-        silence = EARLY_SILENCE if now - self._began < EARLY else SILENCE
-        if now - self._moved > silence:
+        if now - self._moved > SILENCE:
             self._shown += min(self._step(), STEP_OF_LEFT * left)
             self._moved = now
         if self._shown - self._seen >= self._least:
