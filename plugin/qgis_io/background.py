@@ -35,8 +35,6 @@ AHEAD, STEPS_AHEAD = 0.05, 8
 #: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
 #: more, before the first word and after it.
 STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.05, 0.01, 0.0002
-#: Share of what is left that a step which is seen may take.
-LAST_OF_LEFT = 0.5
 #: Part of the bar that the work's own fraction drives; what follows its last word has the rest.
 WORK_PART = 0.98
 
@@ -80,8 +78,7 @@ class Bar:
             self._shown += left * min((now - self._looked) / max(remaining, LOOK), 1.0)
         self._looked = now
         if now - self._moved > SILENCE:
-            seen = min(1.01 * self._least, LAST_OF_LEFT * left)  # near the end a step is more
-            self._shown += min(self._step(), max(STEP_OF_LEFT * left, seen))
+            self._shown += min(self._step(), STEP_OF_LEFT * left)
             self._moved = now
         if self._shown - self._seen >= self._least:
             self._seen, self._moved = self._shown, now
