@@ -149,7 +149,9 @@ def scale_map_names(geo: GeoPyramid, maps: ScaleMaps, what: str) -> tuple[str, .
     )
 
 
-def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
+def band_names(
+    geo: GeoPyramid, what: str = "rms", progress: Progress | None = None
+) -> tuple[str, ...]:
     """Name of the raster band of each level, with its spacing; the coarsest level first.
 
     Parameters
@@ -158,8 +160,10 @@ def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
         Whose levels are named.
     what : str
         The first word.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
-    spacings = level_spacings(geo.pyramid)[1:]
+    spacings = level_spacings(geo.pyramid, progress)[1:]
     unit = _distance_unit(geo)
     return tuple(
         f"{what} of level {level}, spacing {spacing:.3g} {unit}"

@@ -20,6 +20,7 @@ from wavelet_core.features.scale_maps import (
 from wavelet_core.features.shape import SHAPE_NAMES, SurfaceShape, surface_shape
 from wavelet_core.features.spectrum import vertex_details
 from wavelet_core.lifting.spacings import level_spacings
+from wavelet_core.progress import part_of
 from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, RASTER_SUFFIXES, suffix_of
 from wavelet_gis.model.dem import GridGeometry
@@ -133,12 +134,13 @@ class Details:
         """
         geo = self.geo
         if self.what in _BY_SCALE:
-            maps = self._scale_maps(progress)
+            maps = self._scale_maps(part_of(progress, 0.0, 0.8))
             names = scale_map_names(geo, maps, self.what)
             finest = geo.pyramid.synthesise()
-            return value_bands(geo, finest, scale_map_columns(maps), names, cell_size)
+            columns, part = scale_map_columns(maps), part_of(progress, 0.8, 1.0)
+            return value_bands(geo, finest, columns, names, cell_size, part)
         if self.what == "residual":
-            column = residual_column(geo, self.level, progress)[:, None]
+            column = residual_column(geo, self.level, part_of(progress, 0.0, 0.8))[:, None]
             name = f"height above the mean around, level {self.level}"
             return value_bands(geo, geo.pyramid.synthesise(), column, (name,), cell_size)
         mesh = geo.pyramid.mesh(self.level)
@@ -150,8 +152,9 @@ class Details:
         if self.what == "landforms":
             return self._landform_band(mesh, cell_size)
         columns_of, word = _BY_LEVEL[self.what]
-        columns = columns_of(geo, self.channel, progress)
-        return value_bands(geo, mesh, columns, band_names(geo, word), cell_size)
+        columns = columns_of(geo, self.channel, part_of(progress, 0.0, 0.15))
+        names = band_names(geo, word, part_of(progress, 0.15, 0.5))
+        return value_bands(geo, mesh, columns, names, cell_size, part_of(progress, 0.5, 1.0))
 
     def layer(self, progress: Progress | None = None) -> Layer:
         """Return the vertices as a layer.
