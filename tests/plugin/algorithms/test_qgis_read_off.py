@@ -215,6 +215,30 @@ class TestDifference:
         assert "reproject it" in told
 
 
+class TestChangeByScale:
+    def test_a_mound_is_found_in_the_coarse_bands(self, run, made, tmp_path):
+        from osgeo import gdal
+
+        y, x = np.mgrid[0 : hills().shape[0], 0 : hills().shape[1]]
+        mound = 3.0 * np.exp(-((x - 20) ** 2 + (y - 15) ** 2) / 60.0)
+        earlier = write_raster(tmp_path / "before.tif", (hills() - mound).astype("float32"))
+        output = str(tmp_path / "change.tif")
+        found = run(
+            "changebyscale", {"INPUT": str(made / "p.gpkg"), "EARLIER": earlier, "OUTPUT": output}
+        )
+        assert found["HIGHEST"] == pytest.approx(3.0, abs=0.01)
+        assert found["LOWEST"] == pytest.approx(0.0, abs=0.01)
+        bands = gdal.Open(output).ReadAsArray()
+        assert bands[0] == pytest.approx(mound, abs=1e-3)
+        assert bands[1:].sum(axis=0) == pytest.approx(bands[0], abs=1e-3)
+        assert np.abs(bands[1:-1].sum(axis=0)).max() > 3 * np.abs(bands[-1]).max()
+
+    def test_an_earlier_dem_in_another_crs_is_refused(self, refused, made, tmp_path):
+        other = write_raster(tmp_path / "o.tif", hills().astype("float32"), epsg=32631)
+        parameters = {"INPUT": str(made / "p.gpkg"), "OUTPUT": str(tmp_path / "d.tif")}
+        assert "reproject it" in refused("changebyscale", {**parameters, "EARLIER": other})
+
+
 def test_the_mesh_quality_is_a_table(run, made):
     found = run(
         "meshquality", {"INPUT": str(made / "p.gpkg"), "LEVELS": "0,5", "OUTPUT": "memory:"}

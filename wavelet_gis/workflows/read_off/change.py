@@ -73,19 +73,21 @@ class ChangeByScale:
         total: FloatArray = self.columns.sum(axis=1)
         return total
 
-    def raster(self, cell_size: float | None = None) -> Bands:
+    def raster(self, cell_size: float | None = None, progress: Progress | None = None) -> Bands:
         """Return the change as a raster: all of it, then one band for each column.
 
         Parameters
         ----------
         cell_size : float, optional
             In the input's unit of x and y; by default the grid of the input.
+        progress : callable, optional
+            Called with a fraction in [0, 1]; the work stops when it returns False.
         """
         values = np.where(self.is_known, np.column_stack([self.total, self.columns]).T, np.nan).T
         sizes = [f"{band.spacing:.4g}" for band in self.bands]
         names = ["change", f"base, above {sizes[0]}", *(f"spacing {size}" for size in sizes[1:])]
         mesh = self.geo.pyramid.synthesise()
-        return value_bands(self.geo, mesh, values, names, cell_size)
+        return value_bands(self.geo, mesh, values, names, cell_size, progress)
 
     def write(
         self, path: str | os.PathLike[str], *, cell_size: float | None = None
