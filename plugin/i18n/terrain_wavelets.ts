@@ -1845,7 +1845,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
+    <source>&lt;i&gt;windows&lt;/i&gt;: to all that lies within windows two and a half spacings of the level wide, as raster programs do it; &lt;i&gt;surface&lt;/i&gt;: to the surface of the level at its vertices, as &lt;i&gt;Extract level&lt;/i&gt; writes it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1916,6 +1921,11 @@
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Ridges and hilltops are above 0, channels and pits below.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Shape fitted to</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -1845,8 +1845,13 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
-    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition, Krümmung und Landformen der Oberfläche einer Stufe, so glatt wie die Stufe, und wie hoch Orte über ihrer Umgebung liegen. Für Stufen, die am Boden von einer Größe sind, mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysieren.</translation>
+    <source>&lt;i&gt;windows&lt;/i&gt;: to all that lies within windows two and a half spacings of the level wide, as raster programs do it; &lt;i&gt;surface&lt;/i&gt;: to the surface of the level at its vertices, as &lt;i&gt;Extract level&lt;/i&gt; writes it.</source>
+    <translation>&lt;i&gt;windows&lt;/i&gt;: an alles, was in Fenstern von zweieinhalb Abständen der Stufe liegt, wie es Rasterprogramme tun; &lt;i&gt;surface&lt;/i&gt;: an die Oberfläche der Stufe an ihren Punkten, wie &lt;i&gt;Stufe entnehmen&lt;/i&gt; sie schreibt.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
+    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition, Krümmung und Landformen einer Stufe, so glatt wie die Stufe, und wie hoch Orte über ihrer Umgebung liegen. Für Stufen, die am Boden von einer Größe sind, mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysieren.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -1917,6 +1922,11 @@
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Ridges and hilltops are above 0, channels and pits below.</source>
     <translation>Rücken und Kuppen über 0, Rinnen und Senken darunter.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Shape fitted to</source>
+    <translation>Form angepasst an</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>

@@ -136,6 +136,19 @@ class TestShape:
         assert coarse[1] < 0.8 * fine[1]
         assert coarse[0] == pytest.approx(fine[0], rel=0.1)
 
+    def test_shape_is_of_windows_or_less_smooth_of_the_surface(self, run, made, tmp_path):
+        bent = {}
+        for fit in (None, "windows", "surface"):
+            path = str(tmp_path / f"{fit}.tif")
+            given = {} if fit is None else {"FIT": fit}
+            run(
+                "shapeoflevel",
+                {"INPUT": str(made / "p.gpkg"), "LEVEL": 2, "MEAN_CURVATURE": path, **given},
+            )
+            bent[fit] = numbers(path)
+        assert np.array_equal(bent[None], bent["windows"])
+        assert np.nanstd(bent["surface"]) > np.nanstd(bent["windows"])
+
     def test_they_open_in_colours_that_mean_something(self, opened, made):
         layers = opened(
             "shapeoflevel",
