@@ -3,9 +3,10 @@
     QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis/pictures.py DEM.tif [--full FOLDER]
 
 DEM.tif is matplotlib's DEM of Jacksboro in a projected CRS (`examples/demo.py` writes it in
-degrees; ``gdalwarp -t_srs EPSG:26916 -tr 80 80 -r cubic``). Every dialog with all parameters open,
-every result as it opens, every model in the modeler and what it makes, the page of options. In
---full each is kept in full size; docs/images/qgis gets contact sheets and a few by themselves.
+degrees; ``gdalwarp -ot Float32 -t_srs EPSG:26916 -tr 80 80 -r cubic``). Every dialog with all
+parameters open, every result as it opens, every model in the modeler and what it makes, the page
+of options. In --full each is kept in full size; docs/images/qgis gets contact sheets and a few by
+themselves.
 """
 
 import argparse
