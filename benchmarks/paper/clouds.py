@@ -30,11 +30,13 @@ def classed(path: Path, figure: str) -> Sample:
     return Sample(path.stem, figure, mesh, "class, hag")
 
 
-def autzen(path: Path, figure: str, n_points: int, share: float) -> Sample:
+def autzen(name: str, path: Path, figure: str, n_points: int, share: float) -> Sample:
     """Return Autzen with intensity, colour and a height above a ground found here.
 
     Parameters
     ----------
+    name : str
+        Of the sample.
     path : Path
     figure : str
     n_points : int
@@ -56,7 +58,7 @@ def autzen(path: Path, figure: str, n_points: int, share: float) -> Sample:
     mesh = TriangleMesh.from_points(
         points[rows], attributes[rows], ("intensity", "red", "green", "blue", "hag")
     )
-    return Sample(path.stem, figure, mesh, note)
+    return Sample(name, figure, mesh, note)
 
 
 def height_above_lows(points: np.ndarray, cell: float = 10.0, widest: float = 200.0) -> np.ndarray:

@@ -24,10 +24,11 @@ def fill(page: Path, results: dict[str, Any]) -> None:
 def tables(results: dict[str, Any]) -> dict[str, list[str]]:
     """Return the lines of every table whose experiment has been run."""
     made = {}
-    for name, one in results.get("rmse", {}).items():
+    whole = {k: v for k, v in results.get("rmse", {}).items() if "GLMN_z" in v}
+    for name, one in whole.items():
         made[f"rmse {name}"] = rmse_table(one)
-    if "rmse" in results:
-        made["rates"] = rate_table(results["rmse"])
+    if whole:
+        made["rates"] = rate_table(whole)
     if "salience" in results:
         made["salience"] = salience_table(results["salience"])
     if "noise" in results:
@@ -59,11 +60,18 @@ def rmse_table(one: dict[str, Any]) -> list[str]:
                 f"{number(design['rmse_coefficients'], k)} / {number(design['rmse_surface'], k)}"
                 for k in steps
             ]
-            rows.append([prediction + update, *cells, f"{100 * design['flipped']:.1f} %"])
-    fixed = one["GLMN_z"]["rmse_surface"]
-    rows.append(["GLMN, z only", *(f"- / {number(fixed, k)}" for k in steps), "0.0 %"])
-    head = ["design", *(f"{k} steps" for k in steps), "flipped at 12"]
+            rows.append([prediction + update, *cells, *shares(design, one["n_vertices"])])
+    fixed = one["GLMN_z"]
+    cells = [f"- / {number(fixed['rmse_surface'], k)}" for k in steps]
+    rows.append(["GLMN, z only", *cells, *shares(fixed, one["n_vertices"])])
+    head = ["design", *(f"{k} steps" for k in steps), "flipped at 12", "not covered at 12"]
     return [f"{one['n_vertices']:,} vertices; {one['note']}.", "", *markdown(head, rows)]
+
+
+def shares(design: dict[str, Any], n_vertices: int) -> tuple[str, str]:
+    """Return which shares of the faces are flipped, and of the input's points not covered."""
+    not_covered = 100 * design["n_uncovered"][-1] / n_vertices
+    return f"{100 * design['flipped']:.1f} %", f"{not_covered:.2f} %"
 
 
 def number(values: list[float], step: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise, product
 from pathlib import Path
 from time import perf_counter
@@ -21,44 +22,58 @@ LEVELS = 12
 MAX_DRAWN_FACES = 300_000
 
 
-def run(sample: Sample, pictures: Path) -> dict[str, Any]:
-    """Return errors of every level of every design, from the input down, and draw them."""
-    designs = {}
+def run(sample: Sample, one: dict[str, Any], keep: Callable[[], None]) -> None:
+    """Find the errors of every level of every design, from the input down.
+
+    Parameters
+    ----------
+    sample : Sample
+    one : dict
+        What is known of this cloud, filled in place. Designs that it has are not run again, unless
+        they are of another number of points.
+    keep : callable
+        Called after each design, which takes minutes on a large cloud.
+    """
+    known = {"figure": sample.figure, "note": sample.note, "n_vertices": sample.mesh.n_vertices}
+    if any(one.get(name) != value for name, value in known.items()):
+        one.clear()
+    one.update(known)
+    designs = one.setdefault("designs", {})
     for design in DESIGNS:
-        begin = perf_counter()
-        pyramid = analyse(
-            sample.mesh, levels=LEVELS, partition="quadric", prediction=design, signal="xyz"
-        )
-        rows = pyramid.errors()[::-1]
-        designs[design] = {
-            "n_vertices": [row.n_vertices for row in rows],
-            "rmse_coefficients": [row.rmse_coefficients for row in rows],
-            "rmse_surface": [row.rmse_surface for row in rows],
-            "share_removed": share_removed(pyramid),
-            "flipped": flipped(pyramid),
-        }
-        seconds = perf_counter() - begin
-        last = rows[-1]
-        print(
-            f"  {sample.name} {design}: {last.rmse_coefficients:.4f}, "
-            f"{last.rmse_surface:.3f}, {seconds:.0f} s",
-            flush=True,
-        )
-    in_plan = analyse(
-        sample.mesh, levels=LEVELS, partition="quadric", prediction="GLMN", signal="z"
+        if design not in designs:
+            designs[design] = errors_of(sample, design, "xyz")
+            keep()
+    if "GLMN_z" not in one:
+        one["GLMN_z"] = errors_of(sample, "GLMN", "z")
+        keep()
+
+
+def errors_of(sample: Sample, design: str, signal: str, **reading: Any) -> dict[str, Any]:
+    """Return the errors of every level of one design, from the input down."""
+    begin = perf_counter()
+    pyramid = analyse(
+        sample.mesh,
+        levels=LEVELS,
+        partition="quadric",
+        prediction=design,
+        signal=signal,
+        **reading,
     )
-    fixed = in_plan.errors()[::-1]
-    draw_errors(sample, designs, pictures / f"rmse-{sample.name}.png")
-    draw_levels(sample, pictures / f"levels-{sample.name}.png")
+    rows = pyramid.errors()[::-1]
+    seconds = perf_counter() - begin
+    last = rows[-1]
+    print(
+        f"  {sample.name} {design} {signal}: {last.rmse_coefficients:.4f}, "
+        f"{last.rmse_surface:.3f}, {last.n_uncovered:,} not covered, {seconds:.0f} s",
+        flush=True,
+    )
     return {
-        "figure": sample.figure,
-        "note": sample.note,
-        "n_vertices": sample.mesh.n_vertices,
-        "designs": designs,
-        "GLMN_z": {
-            "n_vertices": [row.n_vertices for row in fixed],
-            "rmse_surface": [row.rmse_surface for row in fixed],
-        },
+        "n_vertices": [row.n_vertices for row in rows],
+        "rmse_coefficients": [row.rmse_coefficients for row in rows],
+        "rmse_surface": [row.rmse_surface for row in rows],
+        "n_uncovered": [row.n_uncovered for row in rows],
+        "share_removed": share_removed(pyramid),
+        "flipped": flipped(pyramid),
     }
 
 
@@ -74,18 +89,37 @@ def flipped(pyramid: Pyramid) -> float:
     return float(np.mean(areas <= 0)) if len(areas) else 0.0
 
 
-def draw_errors(sample: Sample, designs: dict[str, Any], path: Path) -> None:
-    """Draw rmse_coefficients (above) and rmse_surface (below), a column for each update."""
+def draw_errors(
+    name: str, one: dict[str, Any], readings: dict[str, dict[str, Any]], pictures: Path
+) -> None:
+    """Draw rmse_coefficients (above) and rmse_surface (below), a column for each update.
+
+    Parameters
+    ----------
+    name : str
+        The cloud's.
+    one : dict
+        What `run` found of it.
+    readings : dict
+        What other readings of the partition gave on the same points, drawn as thin lines.
+    pictures : Path
+        Folder.
+    """
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(2, 3, figsize=(10, 5.2), constrained_layout=True, sharex=True)
     for column, update in enumerate(UPDATES):
-        for prediction in PREDICTIONS:
-            rows = designs[prediction + update]
-            for axis, name in zip(
-                axes[:, column], ("rmse_coefficients", "rmse_surface"), strict=True
-            ):
-                axis.semilogy(range(1, len(rows[name])), rows[name][1:], label=prediction)
+        for prediction, colour in zip(PREDICTIONS, ("C0", "C1", "C2", "C3"), strict=True):
+            design = prediction + update
+            others = [r[design] for r in readings.values() if design in r]
+            for rows, how in [
+                *((rows, {"linewidth": 0.5, "alpha": 0.6}) for rows in others),
+                (one["designs"][design], {"label": prediction}),
+            ]:
+                for axis, kind in zip(
+                    axes[:, column], ("rmse_coefficients", "rmse_surface"), strict=True
+                ):
+                    axis.semilogy(range(1, len(rows[kind])), rows[kind][1:], color=colour, **how)
         axes[0, column].set_title(update)
         axes[1, column].set_xlabel("analysis steps")
     axes[0, 0].set_ylabel("rmse_coefficients (Eq. 54)")
@@ -96,7 +130,7 @@ def draw_errors(sample: Sample, designs: dict[str, Any], path: Path) -> None:
         high = min(max(axis.get_ylim()[1] for axis in row), 1e3 * low)
         for axis in row:
             axis.set_ylim(low, high)
-    figure.savefig(path, dpi=70, bbox_inches="tight")
+    figure.savefig(pictures / f"rmse-{name}.png", dpi=70, bbox_inches="tight")
     plt.close(figure)
 
 

@@ -73,13 +73,7 @@ class ChangeByScale(PyramidAlgorithm):
             QgsProcessingParameterBand("BAND", tr("Band"), 1, "EARLIER"),
             tr("Band with the elevations."),
         )
-        add_cell_size_parameter(
-            self,
-            tr(
-                "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
-                "from, and for points their mean spacing."
-            ),
-        )
+        add_cell_size_parameter(self)
         self.add(
             QgsProcessingParameterRasterDestination("OUTPUT", tr("Change by scale")),
             tr(

@@ -161,13 +161,7 @@ class ClusterDetails(PyramidAlgorithm):
         )
 
     def _add_outputs(self) -> None:
-        add_cell_size_parameter(
-            self,
-            tr(
-                "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
-                "from, and for points their mean spacing."
-            ),
-        )
+        add_cell_size_parameter(self)
         self.add(
             QgsProcessingParameterRasterDestination(
                 "RASTER", tr("Map of clusters"), optional=True, createByDefault=True

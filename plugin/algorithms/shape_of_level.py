@@ -102,13 +102,7 @@ class ShapeOfLevel(PyramidAlgorithm):
                 "level at its vertices, as <i>Extract level</i> writes it."
             ),
         )
-        add_cell_size_parameter(
-            self,
-            tr(
-                "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
-                "from, and for points their mean spacing."
-            ),
-        )
+        add_cell_size_parameter(self)
         for name, description, text, is_made in (
             ("SLOPE", tr("Slope"), tr("Steepest, in degrees."), True),
             (

@@ -550,11 +550,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/change_by_scale.py"/>
-    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/change_by_scale.py"/>
     <source>Lowest change, in the unit of elevation</source>
     <translation type="unfinished"></translation>
   </message>
@@ -2636,6 +2631,11 @@
   <message>
     <location filename="../../plugin/parameters/surface_output.py"/>
     <source>Cell size of the raster</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

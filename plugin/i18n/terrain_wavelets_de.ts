@@ -550,11 +550,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/change_by_scale.py"/>
-    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
-    <translation>In der Einheit des KBS. Leer für das Gitter des DGM, aus dem die Pyramide gemacht ist, und bei Punkten für ihren mittleren Abstand.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/change_by_scale.py"/>
     <source>Lowest change, in the unit of elevation</source>
     <translation>Niedrigste Veränderung, in der Einheit der Höhe</translation>
   </message>
@@ -2637,6 +2632,11 @@
     <location filename="../../plugin/parameters/surface_output.py"/>
     <source>Cell size of the raster</source>
     <translation>Zellgröße des Rasters</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
+    <translation>In der Einheit des KBS. Leer für das Gitter des DGM, aus dem die Pyramide gemacht ist, und bei Punkten für ihren mittleren Abstand.</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/surface_output.py"/>
