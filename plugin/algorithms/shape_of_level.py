@@ -166,15 +166,16 @@ class ShapeOfLevel(PyramidAlgorithm):
         results: Values = {}
         for k, what in enumerate(kinds):
             start, stop = 0.05 + 0.95 * k / len(kinds), 0.05 + 0.95 * (k + 1) / len(kinds)
-            middle = start + 0.7 * (stop - start)
+            begin, middle = start + 0.1 * (stop - start), start + 0.7 * (stop - start)
             chosen = None if what == "residual" else request.choice("FIT")
             fit: Fit | None = "surface" if chosen == "surface" else None
-            found = details(geo, what=what, level=level, metres=metres, fit=fit)
+            request.stage(tr("Measuring the shape of the surface"))
+            of_kind = partial(details, geo, what=what, level=level, metres=metres, fit=fit)
+            found = request.computed(partial(_unwatched, of_kind), start, begin)
             if what != "residual" or len(kinds) == 1:
                 request.figures = {"LEVEL": found.level}
-            request.stage(tr("Measuring the shape of the surface"))
             bands = request.computed(
-                partial(_raster, found, request.size("CELL_SIZE")), start, middle
+                partial(_raster, found, request.size("CELL_SIZE")), begin, middle
             )
             names = [name for name in wanted if OTHERS.get(name, "shape") == what]
             for n, name in enumerate(names):
@@ -182,6 +183,11 @@ class ShapeOfLevel(PyramidAlgorithm):
                 report = request.progress(middle + n * share, middle + (n + 1) * share)
                 results[name] = _write(request, geo, name, bands, report)
         return results
+
+
+def _unwatched(function: Callable[[], Details], work: Work) -> Details:
+    """Return what a function does that has no progress: the spacings of all levels, above all."""
+    return function()
 
 
 def _raster(found: Details, cell_size: float | None, work: Work) -> Bands:

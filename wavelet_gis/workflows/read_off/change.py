@@ -171,12 +171,13 @@ def change_by_scale(
     )
     lifted = relifted(geo.pyramid, change)
     report(progress, 0.5)
-    components = band_components(lifted, "z", part_of(progress, 0.5, 1.0))
+    components = band_components(lifted, "z", part_of(progress, 0.5, 0.7))
     altered = geo.with_pyramid(lifted, f"change since {terrain.name}")
     unit = geo.frame.z_scale
     levels = joined_levels(lifted)
     columns = _columns(components, levels) / unit
-    return ChangeByScale(altered, columns, is_known, _bands(altered, levels, columns, is_known))
+    bands = _bands(altered, levels, columns, is_known, part_of(progress, 0.7, 1.0))
+    return ChangeByScale(altered, columns, is_known, bands)
 
 
 def _opened(path: str | os.PathLike[str]) -> Terrain:
@@ -225,8 +226,9 @@ def _bands(
     levels: list[tuple[int, int]],
     columns: FloatArray,
     is_known: NDArray[np.bool_],
+    progress: Progress | None,
 ) -> tuple[ChangeBand, ...]:
-    spacings = level_spacings(geo.pyramid)
+    spacings = level_spacings(geo.pyramid, progress)
     rows = [(None, spacings[0]), *(((a, b - 1), spacings[b]) for a, b in levels)]
     return tuple(
         ChangeBand(
