@@ -4,10 +4,11 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PYTEST := $(BIN)/python -m pytest
-# Two workers on two cores take little more than half the time; tests that time nothing allow it.
-PARALLEL ?= --numprocesses auto
+# Two workers on two cores take little more than half the time; tests that time nothing allow it. Each begins with a part of
+# its own, so that what a file's tests share is made by one of them.
+PARALLEL ?= --numprocesses auto --dist worksteal
 
-.PHONY: help demo test test-compiled test-plain test-fast test-exhaustive test-qgis test-qgis-numpy2 lint check docs plugin release clean
+.PHONY: help demo test test-compiled test-plain test-fast test-exhaustive test-qgis test-qgis-numpy2 coverage lint check docs plugin release clean
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
@@ -18,6 +19,7 @@ help:
 	@echo "make test-exhaustive  every case of what make test has a sample of, also part of make check"
 	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
 	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"
+	@echo "make coverage   which lines and branches those tests reach, but for QGIS's"
 	@echo "make lint       ruff, mypy and numpydoc"
 	@echo "make docs       the documentation as a site, in docs/_build/html"
 	@echo "make plugin     the QGIS plugin as dist/terrain_wavelets.zip, from the last commit"
@@ -42,11 +44,22 @@ test:
 	@$(MAKE) --no-print-directory --keep-going test-compiled test-plain test-qgis
 
 # The plugin under Qt 6 needs PyQt6 and no QGIS, so it is among these.
+COMPILED := --ignore tests/plugin/algorithms --ignore tests/plugin/dialogs --ignore-glob '*/test_qgis_*' --ignore tests/models -m "not exhaustive"
+PLAIN := tests/core -m "not large and not data"
+
 test-compiled: $(BIN)/.installed-dev
-	$(PYTEST) --ignore tests/plugin/algorithms --ignore tests/plugin/dialogs --ignore-glob '*/test_qgis_*' --ignore tests/models -m "not exhaustive" $(PARALLEL)
+	$(PYTEST) $(COMPILED) $(PARALLEL)
 
 test-plain: $(BIN)/.installed-dev
-	TERRAIN_WAVELETS_NO_NUMBA=1 $(PYTEST) tests/core -m "not large and not data" $(PARALLEL)
+	TERRAIN_WAVELETS_NO_NUMBA=1 $(PYTEST) $(PLAIN) $(PARALLEL)
+
+# A test that fails here alone (one of a full disk, say) takes nothing from what the others reach.
+coverage: $(BIN)/.installed-dev
+	$(BIN)/python -m coverage erase
+	-$(BIN)/python -m coverage run -m pytest $(COMPILED) $(PARALLEL)
+	-TERRAIN_WAVELETS_NO_NUMBA=1 $(BIN)/python -m coverage run -m pytest $(PLAIN) $(PARALLEL)
+	$(BIN)/python -m coverage combine --quiet
+	$(BIN)/python -m coverage report
 
 test-fast: $(BIN)/.installed-dev
 	$(PYTEST) tests/core tests/test_imports.py -m "not large and not data" -x -q

@@ -23,4 +23,5 @@ fi
 
 scripts/qgis-install.sh || not_run "no QGIS 3.28 or later with Python bindings here"
 scripts/qgis-venv.sh .venv-qgis
-exec .venv-qgis/bin/python -m pytest tests/plugin tests/models "$@"
+# Each of the processes has a QGIS of its own.
+exec .venv-qgis/bin/python -m pytest --numprocesses auto --dist worksteal tests/plugin tests/models "$@"

@@ -43,6 +43,7 @@ from .features.spectrum import (
     heights_above_lows,
     vertex_details,
 )
+from .features.window_shape import window_shape
 from .filtering.denoise import denoise
 from .filtering.gains import band_gains, relifted
 from .filtering.noise.white import channel_noise, estimate_noise
@@ -127,6 +128,7 @@ __all__ = [
     "surface_shape",
     "synthetic",
     "vertex_details",
+    "window_shape",
 ]
 
 __version__ = "0.1.0"

@@ -132,6 +132,10 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
         "difference",
         {"INPUT": "{pyramid}", "LEVEL": 4, "LESS_DEM": "{dem}", "OUTPUT": "{out}.tif"},
     ),
+    "Change by scale": (
+        "changebyscale",
+        {"INPUT": "{pyramid}", "EARLIER": "{dem}", "OUTPUT": "{out}.tif"},
+    ),
     "Mesh quality": ("meshquality", {"INPUT": "{pyramid}", "OUTPUT": "memory:"}),
     "Extract level": (
         "extractlevel",

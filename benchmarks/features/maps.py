@@ -10,6 +10,12 @@ others. Ours are made by one random pyramid ("ours") and as the mean of four ("m
 itself" is the correlation of two single ones. Cells near the outline are left out. Landforms have
 no order: their figure is Cohen's kappa.
 
+Last comes a cloud: ours are straight from its points, theirs of a raster of them (heights of the
+triangulation at the centres of cells that hold one point in the mean).
+
+Shape is taken over windows, as ``details`` does, and of the surface of the level (``--fit
+surface``); the latter stands in rows of its own.
+
 Needs ``whitebox-workflows``, ``pytopocomplexity`` and GRASS (its program ``grass``); what lacks is
 left out and told. The picture is of matplotlib's sample DEM.
 """
@@ -22,6 +28,7 @@ from pathlib import Path
 from shutil import which
 from tempfile import TemporaryDirectory
 
+import laspy
 import numpy as np
 import rasterio
 from scipy import ndimage
@@ -39,8 +46,10 @@ from wavelet_core import (
     level_spacings,
     roughness_by_scale,
     surface_shape,
+    window_shape,
 )
 from wavelet_core.features.shape import SurfaceShape, sample_at
+from wavelet_core.features.window_shape import level_between
 
 #: File, upper and left cell of the window, size of a cell in metres.
 DEMS = (
@@ -49,12 +58,16 @@ DEMS = (
     ("tasmania_33m_f64.tif", 0, 0, 33.3652),
     ("jacksboro_tn_4326.tif", 0, 0, 83.0),
 )
+#: File, class of its points, size of a cell in metres.
+CLOUDS = (("ign_semis_2023_0292_6833_289k.laz", 2, 2.5),)
 #: Side of the windows of DEMs, and of the moving windows, in cells; Whitebox's largest half window.
 SIDE, WINDOWS, LARGEST_HALF = 400, (9, 17, 33), 20
 #: Cells along the outline that are not compared, and levels and number of our pyramids.
 MARGIN, LEVELS, N_PYRAMIDS = 40, 22, 4
 #: Windows in spacings, from which one is chosen; wavelengths in spacings of the band that has them.
 RATIOS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0)
+#: Of GRASS at most, until two agree.
+MAX_RUNS = 6
 RESULTS = Path(__file__).with_suffix(".json")
 SLOPE_TOLERANCE = 1.0
 #: GRASS's features and geomorphons as places in ``wavelet_core.LANDFORMS``; slopes, shoulders and
@@ -62,6 +75,12 @@ SLOPE_TOLERANCE = 1.0
 FEATURES = np.array([-1, 0, 1, 2, 3, 4, 5])
 GEOMORPHONS = np.array([-1, 0, 5, 4, 0, 4, 0, 2, 0, 2, 1])
 OVER_ALL = "all"
+
+
+#: Ends the names of shapes of the surface of a level.
+OF_SURFACE = ", surface"
+#: Our names of GRASS's.
+NAMES = {"slope": "slope", "across": "tangential", "along": "profile"}
 
 
 class Theirs:
@@ -101,17 +120,19 @@ class Theirs:
         for window in WINDOWS:
             for name, method in by_name.items():
                 lines.append(_param_scale(f"{name}_{window}", method, window, 1e-4))
-        self._run(lines + [_export(f"{name}_{w}") for name in by_name for w in WINDOWS])
+        found = self._steady(lines, [f"{name}_{w}" for name in by_name for w in WINDOWS])
         for window in WINDOWS:
-            maps.update({(name, window): self._read(f"{name}_{window}") for name in by_name})
+            maps.update({(name, window): found[f"{name}_{window}"] for name in by_name})
             bend = np.nanquantile(np.abs(maps["across", window]), 1 / 3)
             again = [*lines[:2], _param_scale("forms", "feature", window, bend)]
             search = f"search={window // 2} flat={SLOPE_TOLERANCE}"
             again.append(f"r.geomorphon elevation=z forms=geomorphon {search}")
-            self._run([*again, _export("forms"), _export("geomorphon")])
+            classes = self._steady(again, ["forms", "geomorphon"])
             maps["bend", window] = bend
-            maps["landforms", window] = _recoded(self._read("forms"), FEATURES)
-            maps["geomorphons", window] = _recoded(self._read("geomorphon"), GEOMORPHONS)
+            for name in by_name:
+                maps[name + OF_SURFACE, window] = maps[name, window]
+            maps["landforms", window] = _recoded(classes["forms"], FEATURES)
+            maps["geomorphons", window] = _recoded(classes["geomorphon"], GEOMORPHONS)
         return maps
 
     def wavelets(self):
@@ -132,6 +153,20 @@ class Theirs:
             )
         return maps
 
+    def _steady(self, lines, names):
+        """Return the maps that GRASS makes, once two runs agree.
+
+        r.param.scale gives other values for the same input in one run out of twenty or thirty.
+        """
+        before = {}
+        for _ in range(MAX_RUNS):
+            self._run([*lines, *(_export(name) for name in names)])
+            found = {name: self._read(name) for name in names}
+            if before and all(_same(found[name], before[name]) for name in names):
+                return found
+            before = found
+        raise SystemExit(f"GRASS: no two of {MAX_RUNS} runs agree on {', '.join(names)}.")
+
     def _run(self, lines):
         script = Path(self.folder, "run.sh")
         script.write_text("set -e\n" + "\n".join(lines) + "\n", encoding="utf-8")
@@ -143,6 +178,12 @@ class Theirs:
     def _read(self, name):
         with rasterio.open(f"{self.folder}/{name}.tif") as file:
             return file.read(1, masked=True).astype(float).filled(np.nan)
+
+
+def _same(one, other):
+    """Return whether maps are equal but for rounding, in all but a thousandth of the cells."""
+    close = np.isclose(one, other, rtol=1e-6, atol=1e-9 * np.nanstd(one), equal_nan=True)
+    return close.mean() > 0.999
 
 
 def _param_scale(name, method, window, bend):
@@ -159,24 +200,73 @@ def _recoded(codes, table):
     return table[np.nan_to_num(codes).astype(int)]
 
 
-class Ours:
-    """Our maps of one DEM by one pyramid, by name and ground distance."""
+class Terrain:
+    """A mesh, and heights of it on a grid of cells: of a DEM the same."""
 
-    def __init__(self, z, cell, seed):
-        x, y = cell * np.arange(z.shape[1]), -cell * np.arange(z.shape[0])
-        mesh = TriangleMesh.from_grid(z, x=x, y=y)
-        self.shape, self.plan = z.shape, mesh.vertices[:, :2]
+    def __init__(self, z, cell, mesh=None, corner=(0.0, 0.0)):
+        self.z, self.cell = z, cell
+        x = corner[0] + cell * np.arange(z.shape[1])
+        y = corner[1] - cell * np.arange(z.shape[0])
+        self.mesh = TriangleMesh.from_grid(z, x=x, y=y) if mesh is None else mesh
+        self.is_grid = mesh is None
+        columns, rows = np.meshgrid(x, y)
+        self.plan = np.column_stack([columns.ravel(), rows.ravel()])
+
+    def on_cells(self, found, mesh=None):
+        """Return values at the vertices of a mesh, by default the finest, at the cells."""
+        if mesh is None and self.is_grid:
+            return found
+        return sample_at(self.mesh if mesh is None else mesh, found, self.plan)
+
+
+def terrains(data, wanted):
+    """Yield the DEMs and the clouds by name."""
+    for name, top, left, cell in DEMS:
+        if any(part in name for part in wanted):
+            with rasterio.open(data / "dems" / name) as file:
+                z = file.read(1).astype(float)[top : top + SIDE, left : left + SIDE]
+            yield name, Terrain(z, cell)
+    for name, kind, cell in CLOUDS:
+        if any(part in name for part in wanted):
+            yield name, of_cloud(data / "clouds" / name, kind, cell)
+
+
+def of_cloud(path, kind, cell):
+    """Return the points of a class as a mesh, and their raster."""
+    cloud = laspy.read(path)
+    points = cloud.xyz[np.asarray(cloud.classification) == kind]
+    points = points - points.min(axis=0)
+    _, first = np.unique(points[:, :2], axis=0, return_index=True)
+    mesh = TriangleMesh.from_points(points[np.sort(first)])
+    width, height = points[:, :2].max(axis=0)
+    shape = int(height / cell), int(width / cell)
+    corner = (cell / 2, (shape[0] - 0.5) * cell)
+    empty = Terrain(np.zeros(shape), cell, mesh, corner)
+    z = empty.on_cells(mesh.vertices[:, 2]).reshape(shape)
+    if np.isnan(z).any():  # outside the hull, in the margin that is not compared
+        known = ndimage.distance_transform_edt(
+            np.isnan(z), return_distances=False, return_indices=True
+        )
+        z = z[tuple(known)]
+    return Terrain(z, cell, mesh, corner)
+
+
+class Ours:
+    """Our maps of one terrain by one pyramid, by name and ground distance."""
+
+    def __init__(self, terrain, seed):
+        self.terrain, self.shape, self.cell = terrain, terrain.z.shape, terrain.cell
+        mesh = terrain.mesh
         options = {"partition": "random", "prediction": "plane"}
         self.pyramid = analyse(mesh, levels=LEVELS, seed=seed, **options)
         self.spacings = level_spacings(self.pyramid)
-        self.cell = cell
         self.components = band_components(self.pyramid)
         self.energies = band_energies(self.pyramid)
         self.by_scale = {
             "roughness": roughness_by_scale(self.pyramid),
             "deviation": deviation_by_scale(self.pyramid),
         }
-        self.shapes: dict[int, SurfaceShape] = {}
+        self.shapes: dict[tuple[float, bool], SurfaceShape] = {}
 
     def at(self, name, distance):
         """Return the map of a ground distance, or over all of them where that is ``all``."""
@@ -199,24 +289,27 @@ class Ours:
             level = level_at_distance(self.pyramid, distance)
             found = heights_above_means(self.pyramid, [level])
         else:
-            shape = self.shape_at(distance)
-            found = {"slope": "slope", "across": "tangential", "along": "profile"}[name]
-            found = shape.named(found)
-        return found.reshape(self.shape)
+            shape = self.shape_at(distance, OF_SURFACE in name)
+            return shape.named(NAMES[name.removesuffix(OF_SURFACE)]).reshape(self.shape)
+        return self.terrain.on_cells(found).reshape(self.shape)
 
-    def shape_at(self, distance):
-        """Return the shape of a level at the cells, as the command ``details`` has it."""
-        level = level_at_distance(self.pyramid, distance)
-        if level not in self.shapes:
-            mesh = self.pyramid.mesh(level)
-            shape = surface_shape(mesh)
-            cells = sample_at(mesh, np.column_stack([shape.gradient, shape.hessian]), self.plan)
-            self.shapes[level] = SurfaceShape(cells[:, :2], cells[:, 2:])
-        return self.shapes[level]
+    def shape_at(self, distance, of_surface):
+        """Return the shape of a ground distance at the cells, as the command ``details`` has it."""
+        if (distance, of_surface) not in self.shapes:
+            if of_surface:
+                mesh = self.pyramid.mesh(level_at_distance(self.pyramid, distance))
+                shape = surface_shape(mesh)
+            else:
+                at = level_between(self.pyramid, distance)
+                mesh, shape = self.pyramid.mesh(at), window_shape(self.pyramid, distance, at=at)
+            columns = np.column_stack([shape.gradient, shape.hessian])
+            cells = self.terrain.on_cells(columns, mesh)
+            self.shapes[distance, of_surface] = SurfaceShape(cells[:, :2], cells[:, 2:])
+        return self.shapes[distance, of_surface]
 
-    def forms(self, distance, bend):
+    def forms(self, distance, bend, of_surface=False):
         """Return the landforms of a ground distance."""
-        shape = self.shape_at(distance)
+        shape = self.shape_at(distance, of_surface)
         classes = landforms(shape, flat_slope=SLOPE_TOLERANCE, flat_curvature=bend)
         return classes.reshape(self.shape)
 
@@ -258,9 +351,16 @@ MAPS = {
     "slope": ("slope", "GRASS `r.param.scale` slope"),
     "across": ("tangential curvature", "GRASS `r.param.scale` crosc"),
     "along": ("profile curvature", "GRASS `r.param.scale` longc"),
+    "slope, surface": ("slope of the level's surface", "the same"),
+    "across, surface": ("tangential curvature of the level's surface", "the same"),
+    "along, surface": ("profile curvature of the level's surface", "the same"),
     "wavelet": ("component of a band, absolute", "`pytopocomplexity` `CWTMexHat`"),
     "wavelet, smoothed": ("energy of a band", "the same, mean over a wavelength"),
 }
+
+
+#: Landforms over windows, and of the surface of the level.
+FORMS = {"landforms": False, "landforms, surface": True}
 
 
 def chosen_ratios(theirs, ours, cell):
@@ -275,17 +375,20 @@ def chosen_ratios(theirs, ours, cell):
             ]
             ratios[name] = RATIOS[int(np.argmax(means))]
     windows = [w for w in WINDOWS if ("landforms", w) in theirs]
-    if windows:
+    for name, of_surface in FORMS.items() if windows else ():
         means = [
             np.mean(
                 [
-                    kappa(theirs["landforms", w], ours.forms(w * cell / r, theirs["bend", w]))[0]
+                    kappa(
+                        theirs["landforms", w],
+                        ours.forms(w * cell / r, theirs["bend", w], of_surface),
+                    )[0]
                     for w in windows
                 ]
             )
             for r in RATIOS
         ]
-        ratios["landforms"] = RATIOS[int(np.argmax(means))]
+        ratios[name] = RATIOS[int(np.argmax(means))]
     return ratios
 
 
@@ -305,21 +408,20 @@ def compared(theirs, several, ratios, cell):
     for window in WINDOWS:
         if ("landforms", window) not in theirs:
             continue
-        bend = theirs["bend", window]
-        distance = window * cell / ratios["landforms"]
-        one, other = (ours.forms(distance, bend) for ours in several[:2])
-        pairs = {
-            "ours": (one, theirs["landforms", window]),
-            "of itself": (one, other),
-            "ours and geomorphons": (one, theirs["geomorphons", window]),
-            "features and geomorphons": (
-                theirs["landforms", window],
-                theirs["geomorphons", window],
-            ),
-        }
-        figures.setdefault("landforms", {})[str(window)] = {
-            key: kappa(*pair)[0] for key, pair in pairs.items()
-        } | {"equal": kappa(*pairs["ours"])[1]}
+        bend, published = theirs["bend", window], theirs["landforms", window]
+        geomorphons = theirs["geomorphons", window]
+        for name, of_surface in FORMS.items():
+            distance = window * cell / ratios[name]
+            one, other = (ours.forms(distance, bend, of_surface) for ours in several[:2])
+            pairs = {
+                "ours": (one, published),
+                "of itself": (one, other),
+                "ours and geomorphons": (one, geomorphons),
+                "features and geomorphons": (published, geomorphons),
+            }
+            figures.setdefault(name, {})[str(window)] = {
+                key: kappa(*pair)[0] for key, pair in pairs.items()
+            } | {"equal": kappa(*pairs["ours"])[1]}
     return figures
 
 
@@ -359,23 +461,23 @@ def as_markdown(results):
             title = f"strongest {title}" if kind == OVER_ALL and "scale" not in name else title
             ratio = "" if kind == OVER_ALL else f"{results['ratios'][name]:g}"
             lines.append(f"| {title} | {published} | {ratio} | " + " | ".join(cells) + " |")
-    for key, title, published in (
-        ("ours", "landforms (kappa)", "GRASS `r.param.scale` feature"),
-        ("ours and geomorphons", "landforms (kappa)", "GRASS `r.geomorphon`"),
-        ("features and geomorphons", "`r.param.scale` feature (kappa)", "GRASS `r.geomorphon`"),
+    feature = "GRASS `r.param.scale` feature"
+    for name, key, title, published in (
+        ("landforms", "ours", "landforms (kappa)", feature),
+        ("landforms, surface", "ours", "landforms of the level's surface (kappa)", "the same"),
+        ("landforms", "ours and geomorphons", "landforms (kappa)", "GRASS `r.geomorphon`"),
+        ("landforms", "features and geomorphons", f"{feature[6:]} (kappa)", "GRASS `r.geomorphon`"),
     ):
         cells = []
         for dem in dems:
-            found = list(results[dem].get("landforms", {}).values())
+            found = list(results[dem].get(name, {}).values())
             if found:
                 text = f"{np.mean([f[key] for f in found]):.2f}"
                 if key == "ours":
                     text += f" / – / {np.mean([f['of itself'] for f in found]):.2f}"
                 cells.append(text)
         if cells:
-            ratio = (
-                f"{results['ratios']['landforms']:g}" if key != "features and geomorphons" else ""
-            )
+            ratio = "" if key == "features and geomorphons" else f"{results['ratios'][name]:g}"
             lines.append(f"| {title} | {published} | {ratio} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
@@ -393,7 +495,7 @@ def draw(path, ratios):
     z, cell = sample["elevation"].astype(float), 83.0
     with TemporaryDirectory() as folder:
         theirs = published_maps(z, cell, folder)
-    ours, window = Ours(z, cell, 0), 17
+    ours, window = Ours(Terrain(z, cell), 0), 17
     forms = colors.ListedColormap(
         ["#ebe6d7", "#08306b", "#4292c6", "#78b478", "#d98c46", "#a50f15"]
     )
@@ -429,7 +531,9 @@ def draw(path, ratios):
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("data", nargs="?", default="../shared/data", type=Path)
-    parser.add_argument("--dems", nargs="+", metavar="NAME", help="parts of names of files")
+    parser.add_argument(
+        "--dems", nargs="+", metavar="NAME", help="parts of names of files, clouds too"
+    )
     parser.add_argument("--output", type=Path, help="keep the results")
     parser.add_argument("--picture", type=Path, help="draw the maps of matplotlib's sample DEM")
     parser.add_argument("--write", type=Path, metavar="PAGE", help="put kept results into a page")
@@ -449,14 +553,11 @@ def main() -> None:
     if not which("grass"):
         print("GRASS is left out: there is no program grass.", flush=True)
     results: dict[str, dict] = {}
-    for name, top, left, cell in DEMS:
-        if arguments.dems and not any(part in name for part in arguments.dems):
-            continue
-        with rasterio.open(arguments.data / "dems" / name) as file:
-            z = file.read(1).astype(float)[top : top + SIDE, left : left + SIDE]
+    for name, terrain in terrains(arguments.data, arguments.dems or [""]):
+        cell = terrain.cell
         with TemporaryDirectory() as folder:
-            theirs = published_maps(z, cell, folder)
-        several = [Ours(z, cell, seed) for seed in range(N_PYRAMIDS)]
+            theirs = published_maps(terrain.z, cell, folder)
+        several = [Ours(terrain, seed) for seed in range(N_PYRAMIDS)]
         if not results:
             results["ratios"] = chosen_ratios(theirs, several[0], cell)
         results[name] = compared(theirs, several, results["ratios"], cell)

@@ -6,6 +6,7 @@ Their ids, parameters and outputs are public: models and scripts store them. Non
 from .analyse_dem import AnalyseDem
 from .analyse_point_cloud import AnalysePointCloud
 from .analyse_tin import AnalyseTin
+from .change_by_scale import ChangeByScale
 from .classify_ground import ClassifyGround
 from .cluster_details import ClusterDetails
 from .contours import Contours
@@ -39,6 +40,7 @@ ALGORITHMS = (
     Profile,
     ShapeOfLevel,
     Difference,
+    ChangeByScale,
     MeshQuality,
     FilterLevels,
     DetailLayers,

@@ -161,13 +161,7 @@ class ClusterDetails(PyramidAlgorithm):
         )
 
     def _add_outputs(self) -> None:
-        add_cell_size_parameter(
-            self,
-            tr(
-                "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
-                "from, and for points their mean spacing."
-            ),
-        )
+        add_cell_size_parameter(self)
         self.add(
             QgsProcessingParameterRasterDestination(
                 "RASTER", tr("Map of clusters"), optional=True, createByDefault=True
@@ -224,7 +218,7 @@ class ClusterDetails(PyramidAlgorithm):
         geo = self.geo_pyramid(request)
         is_learned = _teacher(request) != TEACHERS[0]
         labelled = self._classes(request, geo) if is_learned else self._clusters(request, geo)
-        summary = request.computed(lambda work: labelled.summary(), 0.7, 0.72)
+        summary = request.computed(lambda work: labelled.summary(), 0.55, 0.7)
         word = tr("class") if is_learned else tr("cluster")
         for row in summary["clusters"]:
             request.say(f"{word} {row['label']}: {row['n_vertices']} ({100 * row['share']:.1f} %)")
@@ -253,7 +247,7 @@ class ClusterDetails(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        return request.computed(compute, 0.05, 0.7)
+        return request.computed(compute, 0.05, 0.55)
 
     def _classes(self, request: Request, geo: GeoPyramid) -> Labelled:
         from wavelet_gis.workflows.learning.cluster import classify
@@ -275,7 +269,7 @@ class ClusterDetails(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        return request.computed(compute, 0.05, 0.7)
+        return request.computed(compute, 0.05, 0.55)
 
     def _given(self, request: Request, geo: GeoPyramid) -> NDArray[np.int64]:
         """Return the classes that are known, below 0 where they are not."""
@@ -312,7 +306,7 @@ def _written(request: Request, labelled: Labelled) -> Values:
     path = request.output_layer("RASTER")
     if path:
         cell_size = request.size("CELL_SIZE")
-        bands = request.computed(lambda work: labelled.raster(cell_size), 0.72, 0.78)
+        bands = request.computed(lambda work: labelled.raster(cell_size), 0.7, 0.78)
         report = request.progress(0.78, 0.82)
         write_bands(path, bands, crs_of(labelled.geo), request.feedback, report)
         request.finish("RASTER", path, partial(styles.style_labels, name=labelled.name))

@@ -127,13 +127,7 @@ class DetailLayers(PyramidAlgorithm):
                 "distance on the ground at which it is found; then a band for each scale."
             ),
         )
-        add_cell_size_parameter(
-            self,
-            tr(
-                "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
-                "from, and for points their mean spacing."
-            ),
-        )
+        add_cell_size_parameter(self)
         self.addOutput(QgsProcessingOutputNumber("N_DETAILS", tr("Number of points")))
         self.addOutput(QgsProcessingOutputNumber("MAX_MAGNITUDE", tr("Largest magnitude")))
 

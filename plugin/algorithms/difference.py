@@ -12,17 +12,15 @@ from qgis.core import (
 )
 
 from ..base import Values
-from ..parameters.pyramid import checked_level, crs_of
+from ..parameters.pyramid import checked_level, crs_of, dem_beside
 from ..parameters.request import Request
 from ..parameters.surface_output import add_cell_size_parameter
 from ..ui.enums import WHOLE_NUMBER
-from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._pyramid_input import PyramidAlgorithm
 
 if TYPE_CHECKING:
     from wavelet_gis.model.dem import Dem
-    from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.workflows.read_off.difference import Difference as Result
 
     from ..qgis_io.background import Work
@@ -127,7 +125,7 @@ class Difference(PyramidAlgorithm):
         given = request.whole("LESS_LEVEL")
         less: int | Dem | None = None if given is None else checked_level(geo, given)
         if self.raster is not None:
-            less = self._dem(request, geo, self.raster)
+            less = dem_beside(request, geo, self.raster)
         cell_size = request.size("CELL_SIZE")
         request.stage(tr("Subtracting the surfaces"))
 
@@ -143,23 +141,3 @@ class Difference(PyramidAlgorithm):
         write_dem(path, found.dem, crs_of(geo), request.feedback)
         request.finish("OUTPUT", path, styles.style_difference)
         return {**request.figures, "OUTPUT": path}
-
-    def _dem(self, request: Request, geo: GeoPyramid, raster: RasterInput) -> Dem:
-        """Return the DEM, which must lie in the CRS of the pyramid."""
-        from ..qgis_io.raster_reader import read_dem
-
-        own = crs_of(geo)
-        if raster.crs.isValid() and own.isValid() and raster.crs != own:
-            raise QgsProcessingException(
-                tr("{}: its CRS is {}, that of the pyramid is {}; reproject it.").format(
-                    raster.name, raster.crs.userFriendlyIdentifier(), own.userFriendlyIdentifier()
-                )
-            )
-        if raster.crs.isValid() != own.isValid():
-            request.feedback.pushWarning(
-                tr(
-                    "{}: of this layer and the terrain only one has a CRS, so their coordinates "
-                    "are taken to be alike (assign the CRS that is missing)"
-                ).format(raster.name)
-            )
-        return read_dem(raster, request.feedback)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from qgis.core import QgsProcessingParameterNumber, QgsProcessingParameterRasterDestination
 
 from ..base import Values
+from ..parameters.choices import choice
 from ..parameters.pyramid import checked_level, crs_of
 from ..parameters.request import Request
 from ..parameters.surface_output import add_cell_size_parameter
@@ -20,7 +21,7 @@ from ._pyramid_input import PyramidAlgorithm
 if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.products.vertex_raster import Bands
-    from wavelet_gis.workflows.details import Details, Quantity
+    from wavelet_gis.workflows.details import Details, Fit, Quantity
 
     from ..qgis_io.background import Work
 
@@ -32,6 +33,8 @@ BANDS = {
     "TANGENTIAL_CURVATURE": "tangential",
     "MEAN_CURVATURE": "mean",
 }
+#: What quadratics are fitted to, those of `wavelet_gis.workflows.details`.
+FITS = ("windows", "surface")
 #: What each of the other outputs is.
 OTHERS: dict[str, Quantity] = {"LANDFORMS": "landforms", "RESIDUAL": "residual"}
 
@@ -66,7 +69,7 @@ class ShapeOfLevel(PyramidAlgorithm):
         """Return what it does."""
         return tr(
             "A landform has a size: the slope of a hill is not that of its furrows. This gives "
-            "slope, aspect, curvature and landforms of the surface of one level, each as smooth as "
+            "slope, aspect, curvature and landforms of one level, each as smooth as "
             "the level, and how high places are above their surroundings. For levels that are of "
             "one size on the ground analyse with the partition <i>random</i> and the prediction "
             "<i>plane</i>."
@@ -91,13 +94,15 @@ class ShapeOfLevel(PyramidAlgorithm):
                 "metres where the CRS states its unit."
             ),
         )
-        add_cell_size_parameter(
-            self,
+        self.add(
+            choice("FIT", tr("Shape fitted to"), FITS),
             tr(
-                "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
-                "from, and for points their mean spacing."
+                "<i>windows</i>: to all that lies within windows two and a half spacings of the "
+                "level wide, as raster programs do it; <i>surface</i>: to the surface of the "
+                "level at its vertices, as <i>Extract level</i> writes it."
             ),
         )
+        add_cell_size_parameter(self)
         for name, description, text, is_made in (
             ("SLOPE", tr("Slope"), tr("Steepest, in degrees."), True),
             (
@@ -161,13 +166,16 @@ class ShapeOfLevel(PyramidAlgorithm):
         results: Values = {}
         for k, what in enumerate(kinds):
             start, stop = 0.05 + 0.95 * k / len(kinds), 0.05 + 0.95 * (k + 1) / len(kinds)
-            middle = start + 0.7 * (stop - start)
-            found = details(geo, what=what, level=level, metres=metres)
+            begin, middle = start + 0.1 * (stop - start), start + 0.7 * (stop - start)
+            chosen = None if what == "residual" else request.choice("FIT")
+            fit: Fit | None = "surface" if chosen == "surface" else None
+            request.stage(tr("Measuring the shape of the surface"))
+            of_kind = partial(details, geo, what=what, level=level, metres=metres, fit=fit)
+            found = request.computed(partial(_unwatched, of_kind), start, begin)
             if what != "residual" or len(kinds) == 1:
                 request.figures = {"LEVEL": found.level}
-            request.stage(tr("Measuring the shape of the surface"))
             bands = request.computed(
-                partial(_raster, found, request.size("CELL_SIZE")), start, middle
+                partial(_raster, found, request.size("CELL_SIZE")), begin, middle
             )
             names = [name for name in wanted if OTHERS.get(name, "shape") == what]
             for n, name in enumerate(names):
@@ -175,6 +183,11 @@ class ShapeOfLevel(PyramidAlgorithm):
                 report = request.progress(middle + n * share, middle + (n + 1) * share)
                 results[name] = _write(request, geo, name, bands, report)
         return results
+
+
+def _unwatched(function: Callable[[], Details], work: Work) -> Details:
+    """Return what a function does that has no progress: the spacings of all levels, above all."""
+    return function()
 
 
 def _raster(found: Details, cell_size: float | None, work: Work) -> Bands:

@@ -524,6 +524,71 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Change by scale</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Earlier DEM</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Highest change, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>How much terrain has risen since an earlier DEM, all of it and by scale</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>In the CRS of the pyramid, which is of the later survey; its cells may differ.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Lowest change, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Mean change, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Root mean square change, in the unit of elevation</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Takes an earlier DEM from the terrain of a pyramid, and the difference apart by scale: a landslide or a mound is in the coarse bands, ploughing and the noise of a survey in the fine ones. All bands add up to the change. Analyse the later survey with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;, whose levels mean the same scale everywhere.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Taking the change apart</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>The first band is all of the change, in the unit of elevation: red is added, blue taken away. Then what is coarser than all levels, and a band for each scale.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>change,dod,dem of difference,erosion,deposition,scale,time,survey,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>spacing {}: {} root mean square, {} to {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/classify_ground.py"/>
     <source>All points, with all their dimensions. LAZ needs the Python package lazrs.</source>
     <translation type="unfinished"></translation>
@@ -691,11 +756,6 @@
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Groups terrain by its scale signature: how much detail each place has at each level. Without a teacher, places that are alike form clusters, numbered from smooth to rough. With training areas, or with the classes that some points of a LAS file have, the classes are learned and predicted for the rest. Analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt; for levels that mean the same scale everywhere.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1091,16 +1151,6 @@
   <message>
     <location filename="../../plugin/algorithms/difference.py"/>
     <source>difference,dod,dem of difference,change,error,residual,compare,level,pyramid,wavelet</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/difference.py"/>
-    <source>{}: its CRS is {}, that of the pyramid is {}; reproject it.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/difference.py"/>
-    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1790,7 +1840,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
+    <source>&lt;i&gt;windows&lt;/i&gt;: to all that lies within windows two and a half spacings of the level wide, as raster programs do it; &lt;i&gt;surface&lt;/i&gt;: to the surface of the level at its vertices, as &lt;i&gt;Extract level&lt;/i&gt; writes it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1861,6 +1916,11 @@
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Ridges and hilltops are above 0, channels and pits below.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Shape fitted to</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2524,6 +2584,16 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>{}: its CRS is {}, that of the pyramid is {}; reproject it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/parameters/restored_output.py"/>
     <source>For a pyramid of a DEM.</source>
     <translation type="unfinished"></translation>
@@ -2561,6 +2631,11 @@
   <message>
     <location filename="../../plugin/parameters/surface_output.py"/>
     <source>Cell size of the raster</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

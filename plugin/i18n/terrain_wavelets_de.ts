@@ -524,6 +524,71 @@
     <translation>tin,punkte,dreiecke,triangulieren,bruchkanten,vermessung,points,triangles,triangulate,delaunay,breaklines,survey,pyramide,pyramid,wavelet,multiresolution,analyze</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Change by scale</source>
+    <translation>Veränderung nach Größenordnung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Earlier DEM</source>
+    <translation>Früheres DGM</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Highest change, in the unit of elevation</source>
+    <translation>Höchste Veränderung, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>How much terrain has risen since an earlier DEM, all of it and by scale</source>
+    <translation>Wie viel sich das Gelände seit einem früheren DGM gehoben hat, im Ganzen und nach Größenordnung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>In the CRS of the pyramid, which is of the later survey; its cells may differ.</source>
+    <translation>Im KBS der Pyramide, die von der späteren Aufnahme ist; seine Zellen dürfen andere sein.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Lowest change, in the unit of elevation</source>
+    <translation>Niedrigste Veränderung, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Mean change, in the unit of elevation</source>
+    <translation>Mittlere Veränderung, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Root mean square change, in the unit of elevation</source>
+    <translation>Quadratisches Mittel der Veränderung, in der Einheit der Höhe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Takes an earlier DEM from the terrain of a pyramid, and the difference apart by scale: a landslide or a mound is in the coarse bands, ploughing and the noise of a survey in the fine ones. All bands add up to the change. Analyse the later survey with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;, whose levels mean the same scale everywhere.</source>
+    <translation>Zieht ein früheres DGM vom Gelände einer Pyramide ab und zerlegt den Unterschied nach Größenordnungen: Ein Erdrutsch oder eine Aufschüttung ist in den groben Bändern, Pflugspuren und das Rauschen einer Aufnahme in den feinen. Alle Bänder zusammen ergeben die Veränderung. Die spätere Aufnahme wird mit der Partition &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysiert, deren Ebenen überall dieselbe Größenordnung bedeuten.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>Taking the change apart</source>
+    <translation>Zerlege die Veränderung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>The first band is all of the change, in the unit of elevation: red is added, blue taken away. Then what is coarser than all levels, and a band for each scale.</source>
+    <translation>Das erste Band ist die ganze Veränderung, in der Einheit der Höhe: rot kam hinzu, blau ging weg. Dann, was gröber als alle Ebenen ist, und je ein Band für jede Größenordnung.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>change,dod,dem of difference,erosion,deposition,scale,time,survey,pyramid,wavelet</source>
+    <translation>veränderung,differenzmodell,erosion,ablagerung,größenordnung,zeit,aufnahme,pyramide,wavelet</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/change_by_scale.py"/>
+    <source>spacing {}: {} root mean square, {} to {}</source>
+    <translation>Abstand {}: quadratisches Mittel {}, von {} bis {}</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/classify_ground.py"/>
     <source>All points, with all their dimensions. LAZ needs the Python package lazrs.</source>
     <translation>Alle Punkte, mit allen ihren Dimensionen. LAZ braucht das Python-Paket lazrs.</translation>
@@ -692,11 +757,6 @@
     <location filename="../../plugin/algorithms/cluster_details.py"/>
     <source>Groups terrain by its scale signature: how much detail each place has at each level. Without a teacher, places that are alike form clusters, numbered from smooth to rough. With training areas, or with the classes that some points of a LAS file have, the classes are learned and predicted for the rest. Analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt; for levels that mean the same scale everywhere.</source>
     <translation>Gruppiert Gelände nach seiner Größensignatur: wie viel Detail jeder Ort in jeder Stufe hat. Ohne Lehrer bilden ähnliche Orte Gruppen, von glatt bis rau nummeriert. Mit Trainingsflächen, oder mit den Klassen, die einige Punkte einer LAS-Datei haben, werden die Klassen gelernt und für den Rest vorhergesagt. Analysieren Sie mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt;, damit Stufen überall dieselbe Größe bedeuten.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/cluster_details.py"/>
-    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
-    <translation>In der Einheit des KBS. Leer für das Gitter des DGM, aus dem die Pyramide gemacht ist, und bei Punkten für ihren mittleren Abstand.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/cluster_details.py"/>
@@ -1092,16 +1152,6 @@
     <location filename="../../plugin/algorithms/difference.py"/>
     <source>difference,dod,dem of difference,change,error,residual,compare,level,pyramid,wavelet</source>
     <translation>Differenz,DoD,Höhendifferenz,Änderung,Fehler,Residuum,Vergleich,Stufe,Pyramide,Wavelet</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/difference.py"/>
-    <source>{}: its CRS is {}, that of the pyramid is {}; reproject it.</source>
-    <translation>{}: sein KBS ist {}, das der Pyramide ist {}; umprojizieren.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/difference.py"/>
-    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
-    <translation>{}: Von diesem Layer und dem Gelände hat nur eines ein KBS, deshalb gelten ihre Koordinaten als gleichartig (weisen Sie das fehlende KBS zu)</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
@@ -1790,8 +1840,13 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
-    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of the surface of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
-    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition, Krümmung und Landformen der Oberfläche einer Stufe, so glatt wie die Stufe, und wie hoch Orte über ihrer Umgebung liegen. Für Stufen, die am Boden von einer Größe sind, mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysieren.</translation>
+    <source>&lt;i&gt;windows&lt;/i&gt;: to all that lies within windows two and a half spacings of the level wide, as raster programs do it; &lt;i&gt;surface&lt;/i&gt;: to the surface of the level at its vertices, as &lt;i&gt;Extract level&lt;/i&gt; writes it.</source>
+    <translation>&lt;i&gt;windows&lt;/i&gt;: an alles, was in Fenstern von zweieinhalb Abständen der Stufe liegt, wie es Rasterprogramme tun; &lt;i&gt;surface&lt;/i&gt;: an die Oberfläche der Stufe an ihren Punkten, wie &lt;i&gt;Stufe entnehmen&lt;/i&gt; sie schreibt.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>A landform has a size: the slope of a hill is not that of its furrows. This gives slope, aspect, curvature and landforms of one level, each as smooth as the level, and how high places are above their surroundings. For levels that are of one size on the ground analyse with the partition &lt;i&gt;random&lt;/i&gt; and the prediction &lt;i&gt;plane&lt;/i&gt;.</source>
+    <translation>Eine Landform hat eine Größe: Die Neigung eines Hügels ist nicht die seiner Furchen. Dies gibt Neigung, Exposition, Krümmung und Landformen einer Stufe, so glatt wie die Stufe, und wie hoch Orte über ihrer Umgebung liegen. Für Stufen, die am Boden von einer Größe sind, mit der Zerlegung &lt;i&gt;random&lt;/i&gt; und der Vorhersage &lt;i&gt;plane&lt;/i&gt; analysieren.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -1862,6 +1917,11 @@
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
     <source>Ridges and hilltops are above 0, channels and pits below.</source>
     <translation>Rücken und Kuppen über 0, Rinnen und Senken darunter.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/shape_of_level.py"/>
+    <source>Shape fitted to</source>
+    <translation>Form angepasst an</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/shape_of_level.py"/>
@@ -2524,6 +2584,16 @@
     <translation>Stufe     Punkte   Dreiecke  RMSE der Fläche  größter Fehler</translation>
   </message>
   <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>{}: its CRS is {}, that of the pyramid is {}; reproject it.</source>
+    <translation>{}: sein KBS ist {}, das der Pyramide ist {}; umprojizieren.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/pyramid.py"/>
+    <source>{}: of this layer and the terrain only one has a CRS, so their coordinates are taken to be alike (assign the CRS that is missing)</source>
+    <translation>{}: Von diesem Layer und dem Gelände hat nur eines ein KBS, deshalb gelten ihre Koordinaten als gleichartig (weisen Sie das fehlende KBS zu)</translation>
+  </message>
+  <message>
     <location filename="../../plugin/parameters/restored_output.py"/>
     <source>For a pyramid of a DEM.</source>
     <translation>Für eine Pyramide aus einem DGM.</translation>
@@ -2562,6 +2632,11 @@
     <location filename="../../plugin/parameters/surface_output.py"/>
     <source>Cell size of the raster</source>
     <translation>Zellgröße des Rasters</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/parameters/surface_output.py"/>
+    <source>In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made from, and for points their mean spacing.</source>
+    <translation>In der Einheit des KBS. Leer für das Gitter des DGM, aus dem die Pyramide gemacht ist, und bei Punkten für ihren mittleren Abstand.</translation>
   </message>
   <message>
     <location filename="../../plugin/parameters/surface_output.py"/>

@@ -18,9 +18,11 @@ from ..ui.known_pyramids import remember
 from ..ui.translation import tr
 
 if TYPE_CHECKING:
+    from wavelet_gis.model.dem import Dem
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
     from ..base import TerrainWaveletsAlgorithm
+    from ..qgis_io.raster_reader import RasterInput
     from .request import Request
 
 
@@ -106,6 +108,33 @@ def crs_of(geo: GeoPyramid) -> QgsCoordinateReferenceSystem:
     """Return the CRS of a pyramid's input; an invalid one where it had none."""
     wkt = layer_wkt(geo)
     return QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
+
+
+def dem_beside(request: Request, geo: GeoPyramid, raster: RasterInput) -> Dem:
+    """Return a DEM to hold against a pyramid, in whose CRS it must lie.
+
+    Raises
+    ------
+    QgsProcessingException
+        It has another CRS.
+    """
+    from ..qgis_io.raster_reader import read_dem
+
+    own = crs_of(geo)
+    if raster.crs.isValid() and own.isValid() and raster.crs != own:
+        raise QgsProcessingException(
+            tr("{}: its CRS is {}, that of the pyramid is {}; reproject it.").format(
+                raster.name, raster.crs.userFriendlyIdentifier(), own.userFriendlyIdentifier()
+            )
+        )
+    if raster.crs.isValid() != own.isValid():
+        request.feedback.pushWarning(
+            tr(
+                "{}: of this layer and the terrain only one has a CRS, so their coordinates "
+                "are taken to be alike (assign the CRS that is missing)"
+            ).format(raster.name)
+        )
+    return read_dem(raster, request.feedback)
 
 
 def layer_wkt(geo: GeoPyramid) -> str | None:

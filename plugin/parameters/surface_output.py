@@ -17,8 +17,12 @@ if TYPE_CHECKING:
     from .request import Request
 
 
-def add_cell_size_parameter(algorithm: TerrainWaveletsAlgorithm, description: str) -> None:
+def add_cell_size_parameter(algorithm: TerrainWaveletsAlgorithm, description: str = "") -> None:
     """Declare CELL_SIZE, of a raster that is written; the description says what holds without."""
+    description = description or tr(
+        "In the unit of the CRS. Empty for the grid of the DEM that the pyramid was made "
+        "from, and for points their mean spacing."
+    )
     algorithm.add(
         QgsProcessingParameterNumber(
             "CELL_SIZE",

@@ -3,9 +3,10 @@
     QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis/pictures.py DEM.tif [--full FOLDER]
 
 DEM.tif is matplotlib's DEM of Jacksboro in a projected CRS (`examples/demo.py` writes it in
-degrees; ``gdalwarp -t_srs EPSG:26916 -tr 80 80 -r cubic``). Every dialog with all parameters open,
-every result as it opens, every model in the modeler and what it makes, the page of options. In
---full each is kept in full size; docs/images/qgis gets contact sheets and a few by themselves.
+degrees; ``gdalwarp -ot Float32 -t_srs EPSG:26916 -tr 80 80 -r cubic``). Every dialog with all
+parameters open, every result as it opens, every model in the modeler and what it makes, the page
+of options. In --full each is kept in full size; docs/images/qgis gets contact sheets and a few by
+themselves.
 """
 
 import argparse
@@ -214,8 +215,10 @@ def results(pictures: Pictures, dem: str, folder: Path) -> None:
     keep("vertices", [vertices["Vertices of the level"]])
     details = opened("detaillayers", {"INPUT": surface, "LAST_LEVEL": 3, "OUTPUT": temporary})
     keep("details", [details["Details by level"]])
-    energy = opened("detaillayers", {"INPUT": by_scale, "OUTPUT": temporary, "ENERGY": temporary})
-    keep("energy", [energy["Energy by level"]], over=False)
+    maps = dict.fromkeys(("OUTPUT", "ENERGY", "ROUGHNESS", "DEVIATION"), temporary)
+    mapped = opened("detaillayers", {"INPUT": by_scale, **maps})
+    for title in ("Energy by level", "Roughness by scale", "Deviation by scale"):
+        keep(title.lower().replace(" ", "_"), [mapped[title]], over=False)
     lines = opened("contours", {"INPUT": surface, "INTERVAL": 40, "OUTPUT": temporary})
     keep("contours", [lines["Contours"]])
     smooth = opened("contours", {"INPUT": surface, "INTERVAL": 40, "LEVEL": 0, "OUTPUT": temporary})
@@ -226,13 +229,26 @@ def results(pictures: Pictures, dem: str, folder: Path) -> None:
             "INPUT": surface,
             "LEVEL": 4,
             **dict.fromkeys(
-                ("SLOPE", "ASPECT", "PROFILE_CURVATURE", "TANGENTIAL_CURVATURE", "MEAN_CURVATURE"),
+                (
+                    "SLOPE",
+                    "ASPECT",
+                    "PROFILE_CURVATURE",
+                    "TANGENTIAL_CURVATURE",
+                    "MEAN_CURVATURE",
+                    "LANDFORMS",
+                    "RESIDUAL",
+                ),
                 temporary,
             ),
         },
     )
     for title, layer in sorted(shape.items()):
         keep(title.lower().replace(" ", "_"), [layer], over=False)
+    later = str(folder / "later.gpkg")
+    after = with_a_mound(dem, folder / "after.tif")
+    processing.run("terrainwavelets:analysedem", {"INPUT": after, "OUTPUT": later, **scales})
+    change = opened("changebyscale", {"INPUT": later, "EARLIER": dem, "OUTPUT": temporary})
+    keep("change_by_scale", [change["Change by scale"]], over=False)
     difference = opened("difference", {"INPUT": surface, "LEVEL": 0, "OUTPUT": temporary})
     keep("difference", [difference["Difference of the surfaces"]], over=False)
     filtered = opened(
@@ -266,6 +282,18 @@ def results(pictures: Pictures, dem: str, folder: Path) -> None:
     pictures.keep("result_profile", from_svg(made["PICTURE"]))
 
 
+def with_a_mound(dem: str, path: Path) -> str:
+    """Write a DEM with a mound of 15 m on it; return where it is."""
+    x_min, cell, _, y_max, _, _ = qgis_layers.read_raster(dem)["transform"]
+    later = qgis_layers.numbers(dem).astype(np.float32)
+    rows, columns = np.mgrid[: later.shape[0], : later.shape[1]]
+    mound = 15 * np.exp(-((rows - 150) ** 2 + (columns - 200) ** 2) / 600)
+    later[later > 0] += mound[later > 0]
+    return qgis_layers.write_raster(
+        path, later, nodata=-32768.0, epsg=26916, origin=(x_min, y_max), cell=cell
+    )
+
+
 def models(pictures: Pictures, provider, dem: str, folder: Path) -> None:
     """Draw every model, and what it makes of the DEM, or of points on it."""
     x_min, cell, _, y_max, _, _ = qgis_layers.read_raster(dem)["transform"]
@@ -286,20 +314,7 @@ def models(pictures: Pictures, provider, dem: str, folder: Path) -> None:
         26916,
         classification=np.full((places[:, 2] > 0).sum(), 2, "u1"),
     )
-    later = heights.astype(np.float32).copy()
-    later[heights > 0] += (
-        15
-        * np.exp(
-            -(
-                (np.mgrid[:n_rows, :n_columns][0] - 150) ** 2
-                + (np.mgrid[:n_rows, :n_columns][1] - 200) ** 2
-            )
-            / 600
-        )[heights > 0]
-    )
-    after = qgis_layers.write_raster(
-        folder / "after.tif", later, nodata=-32768.0, epsg=26916, origin=(x_min, y_max), cell=cell
-    )
+    after = with_a_mound(dem, folder / "after.tif")
     for algorithm in provider.algorithms():
         if algorithm.group() != "Models":
             continue

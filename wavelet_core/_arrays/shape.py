@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._kernels.shape import MAX_NEIGHBOURS, MIN_NEIGHBOURS, MIN_PIVOTS
-from ._csr import expanded, summed
+from .._kernels.shape import (
+    MAX_NEIGHBOURS,
+    MIN_MEANS,
+    MIN_NEIGHBOURS,
+    MIN_PIVOTS,
+    MIN_WINDOW_PIVOT,
+)
+from ._csr import blocks, expanded, summed
 
 #: Vertices whose neighbourhoods are looked at together: a bound on the memory.
 VERTICES_AT_ONCE = 1 << 15
+#: Pairs of a place and a mean near it that are looked at together.
+PAIRS_AT_ONCE = 1 << 20
 
 
 def fit_quadratics(start, stop, points, faces, indptr, star, coefficients):
@@ -74,7 +82,7 @@ def _fit(vertices, row, neighbour, n_rings, points, coefficients):
         [summed(row, terms[i] * terms[j] / squared, zero) for j in range(i + 1)] for i in range(5)
     ]
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        solved, solution = _solve_five(matrix, right, MIN_PIVOTS[n_rings - 1])
+        solved, solution = _solve_normal(matrix, right, MIN_PIVOTS[n_rings - 1])
         solved &= asked
         values = np.column_stack(
             [s / divisor for s in solution[:2]] + [s / (divisor * divisor) for s in solution[2:]]
@@ -83,10 +91,11 @@ def _fit(vertices, row, neighbour, n_rings, points, coefficients):
     return vertices[~solved]
 
 
-def _solve_five(matrix, right, least):
-    """Cholesky of all 5 x 5 systems at once; which are determined, and their solutions."""
+def _solve_normal(matrix, right, least):
+    """Cholesky of all systems at once; which are determined, and their solutions."""
+    n = len(right)
     sound = np.ones(len(right[0]), dtype=bool)
-    for i in range(5):
+    for i in range(n):
         diagonal = matrix[i][i]
         for j in range(i + 1):
             total = matrix[i][j]
@@ -97,15 +106,15 @@ def _solve_five(matrix, right, least):
                 matrix[i][i] = np.sqrt(total)
             else:
                 matrix[i][j] = total / matrix[j][j]
-    solution = [right[0]] * 5
-    for i in range(5):
+    solution = [right[0]] * n
+    for i in range(n):
         total = right[i]
         for k in range(i):
             total = total - matrix[i][k] * solution[k]
         solution[i] = total / matrix[i][i]
-    for i in range(4, -1, -1):
+    for i in range(n - 1, -1, -1):
         total = solution[i]
-        for k in range(i + 1, 5):
+        for k in range(i + 1, n):
             total = total - matrix[k][i] * solution[k]
         solution[i] = total / matrix[i][i]
     return sound, solution
@@ -125,6 +134,46 @@ def _mean_gradients(vertices, points, faces, indptr, star, coefficients):
     coefficients[vertices] = 0.0
     coefficients[vertices, 0] = rise_x[sound] / area[sound]
     coefficients[vertices, 1] = rise_y[sound] / area[sound]
+
+
+def fit_windows(start, stop, places, first, last, means, moments, weights, radius, coefficients):
+    sizes = (last - first).sum(axis=1)
+    for part in blocks(sizes, PAIRS_AT_ONCE):
+        entry, near = expanded(first[part].ravel(), (last[part] - first[part]).ravel())
+        coefficients[part] = _windows(
+            places[part], entry // 3, near, means, moments, weights, radius
+        )
+
+
+def _windows(places, row, near, means, moments, weights, radius):
+    """Coefficients of the places, from pairs of a place and a mean."""
+    u = (means[near, 0] - places[row, 0]) / radius
+    v = (means[near, 1] - places[row, 1]) / radius
+    weight = weights[near] * (1.0 - (u * u + v * v))
+    used = weight > 0.0
+    row, near, u, v, weight = row[used], near[used], u[used], v[used], weight[used]
+    rise = means[near, 2] - places[row, 2]
+    squared = radius * radius
+    terms = (
+        np.ones(len(row)),
+        u,
+        v,
+        0.5 * (u * u + moments[near, 0] / squared),
+        u * v + moments[near, 1] / squared,
+        0.5 * (v * v + moments[near, 2] / squared),
+    )
+    zero = np.zeros(len(places))
+    right = [summed(row, term * rise * weight, zero) for term in terms]
+    matrix = [
+        [summed(row, terms[i] * terms[j] * weight, zero) for j in range(i + 1)] for i in range(6)
+    ]
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        solved, solution = _solve_normal(matrix, right, MIN_WINDOW_PIVOT)
+        values = np.column_stack(
+            [s / radius for s in solution[1:3]] + [s / squared for s in solution[3:]]
+        )
+    values[~(solved & (np.bincount(row, minlength=len(places)) >= MIN_MEANS))] = np.nan
+    return values
 
 
 def filter_moments(start, stop, indptr, indices, weights, positions, odd_positions, first, second):

@@ -14,13 +14,17 @@ MIN_NEIGHBOURS = 5
 # normal equations; neighbours near a conic hardly do, which gave one vertex in a thousand of
 # irregular meshes slopes towards 90 degrees when the first ring had the bound of the second
 MIN_PIVOTS = (0.03, 1e-7)
+# the same of windows, whose quadratics are over-determined, and the fewest means in one: three more
+# than coefficients
+MIN_WINDOW_PIVOT, MIN_MEANS = 1e-3, 9
 
 
-# matrix (5, 5) and right (5,) float64, overwritten; solution (5,) float64, filled by Cholesky;
+# matrix (n, n) and right (n,) float64, overwritten; solution (n,) float64, filled by Cholesky;
 # True where every pivot is above `least` of its diagonal
 @njit
-def solve_five(matrix, right, solution, least):
-    for i in range(5):
+def solve_normal(matrix, right, solution, least):
+    n = len(right)
+    for i in range(n):
         diagonal = matrix[i, i]
         for j in range(i + 1):
             total = matrix[i, j]
@@ -32,14 +36,14 @@ def solve_five(matrix, right, solution, least):
                 matrix[i, i] = math.sqrt(total)
             else:
                 matrix[i, j] = total / matrix[j, j]
-    for i in range(5):
+    for i in range(n):
         total = right[i]
         for k in range(i):
             total -= matrix[i, k] * solution[k]
         solution[i] = total / matrix[i, i]
-    for i in range(4, -1, -1):
+    for i in range(n - 1, -1, -1):
         total = solution[i]
-        for k in range(i + 1, 5):
+        for k in range(i + 1, n):
             total -= matrix[k, i] * solution[k]
         solution[i] = total / matrix[i, i]
     return True
@@ -107,7 +111,7 @@ def fit_quadratics(start, stop, points, faces, indptr, star, coefficients):
                     right[i] += row[i] * rise / squared
                     for j in range(i + 1):
                         matrix[i, j] += row[i] * row[j] / squared
-            if solve_five(matrix, right, solution, MIN_PIVOTS[n_rings - 1]):
+            if solve_normal(matrix, right, solution, MIN_PIVOTS[n_rings - 1]):
                 coefficients[vertex, 0] = solution[0] / scale
                 coefficients[vertex, 1] = solution[1] / scale
                 for i in range(2, 5):
@@ -134,6 +138,47 @@ def mean_gradient(vertex, points, faces, indptr, star, coefficients):
         coefficients[vertex, 0], coefficients[vertex, 1] = rise_x / area, rise_y / area
         for i in range(2, 5):
             coefficients[vertex, i] = 0.0
+
+
+# places (n, 3) float64; first, last (n, 3) int64: runs of the means that may be near each place;
+# means (n_means, 3), moments (n_means, 3), weights (n_means,) float64; coefficients (n, 5) float64,
+# filled as above, NaN where too few means are within `radius`, or they do not determine them
+@kernel
+def fit_windows(start, stop, places, first, last, means, moments, weights, radius, coefficients):
+    matrix = np.empty((6, 6))
+    right = np.empty(6)
+    row = np.empty(6)
+    solution = np.empty(6)
+    for place in range(start, stop):
+        count = 0
+        for i in range(6):
+            right[i] = 0.0
+            for j in range(6):
+                matrix[i, j] = 0.0
+        for run in range(3):
+            for k in range(first[place, run], last[place, run]):
+                u = (means[k, 0] - places[place, 0]) / radius
+                v = (means[k, 1] - places[place, 1]) / radius
+                weight = weights[k] * (1.0 - (u * u + v * v))
+                if not weight > 0.0:
+                    continue
+                count += 1
+                rise = means[k, 2] - places[place, 2]
+                row[0], row[1], row[2] = 1.0, u, v
+                row[3] = 0.5 * (u * u + moments[k, 0] / (radius * radius))
+                row[4] = u * v + moments[k, 1] / (radius * radius)
+                row[5] = 0.5 * (v * v + moments[k, 2] / (radius * radius))
+                for i in range(6):
+                    right[i] += row[i] * rise * weight
+                    for j in range(i + 1):
+                        matrix[i, j] += row[i] * row[j] * weight
+        for i in range(5):
+            coefficients[place, i] = np.nan
+        if count >= MIN_MEANS and solve_normal(matrix, right, solution, MIN_WINDOW_PIVOT):
+            coefficients[place, 0] = solution[1] / radius
+            coefficients[place, 1] = solution[2] / radius
+            for i in range(2, 5):
+                coefficients[place, i] = solution[i + 1] / (radius * radius)
 
 
 # positions (n_even, 2), odd_positions (n_odd, 2) float64; indptr, indices, weights: a prediction

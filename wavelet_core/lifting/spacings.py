@@ -8,15 +8,18 @@ from numpy.typing import NDArray
 from .._validate import FloatArray
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
+from ..progress import Progress, report
 from .pyramid import Pyramid
 
 
-def level_spacings(pyramid: Pyramid) -> FloatArray:
+def level_spacings(pyramid: Pyramid, progress: Progress | None = None) -> FloatArray:
     """Return the median length, in plan, of the edges of every level, ``(L + 1,)``.
 
     Parameters
     ----------
     pyramid : Pyramid
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Returns
     -------
@@ -43,6 +46,7 @@ def level_spacings(pyramid: Pyramid) -> FloatArray:
             step = pyramid.steps[level - 1]
             faces = merged_faces(faces, merge_map(step.odd, step.target, len(plan)))
             plan = plan[even_positions(step.odd, len(plan))]
+        report(progress, 1.0 - len(plan) / len(pyramid.horizontal) if level else 1.0)
     return spacings
 
 

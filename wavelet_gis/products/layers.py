@@ -109,8 +109,8 @@ def pyramid_layers(geo: GeoPyramid, layers: str = "auto") -> Iterator[Layer]:
         finer = geo.pyramid.steps[n_levels:]
         note(
             "layers_left_out",
-            "the details of the {n_levels} finest levels, {n_features:,} points, are no layers, to "
-            "keep the file small; they are in the pyramid, and {0} all writes them too",
+            "the details of the finest levels ({n_levels}), {n_features:,} points, are no layers, "
+            "to keep the file small; they are in the pyramid, and {0} all writes them too",
             "layers",
             n_levels=n_left_out,
             n_features=sum(step.n_odd for step in finer),

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Progress, TriangleMesh
+from wavelet_core.progress import report
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -97,6 +98,7 @@ def value_bands(
     columns: NDArray[np.float64],
     names: Sequence[str],
     cell_size: float | None = None,
+    progress: Progress | None = None,
 ) -> Bands:
     """Values at the vertices of a mesh, interpolated on its faces, one band a column.
 
@@ -112,6 +114,8 @@ def value_bands(
         Of the bands.
     cell_size : float, optional
         See `grid_of`.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     geometry = grid_of(geo, mesh, cell_size)
     values = np.full((len(names), *geometry.shape), np.nan, dtype=np.float32)
@@ -120,10 +124,11 @@ def value_bands(
         values[:, valid] = columns.T
     else:
         in_file = geo.file_mesh(mesh)
-        for band, column in zip(values, columns.T, strict=True):
-            band[:] = fill_lone_cells(
+        for k, column in enumerate(columns.T):
+            values[k] = fill_lone_cells(
                 rasterise(in_file, geometry, column), in_file, geometry, column
             )
+            report(progress, (k + 1) / len(values))
     return Bands(values, tuple(names), geometry)
 
 

@@ -15,12 +15,11 @@ from wavelet_core import (
     STAYS,
     Progress,
     ScaleMaps,
-    TriangleMesh,
+    SurfaceShape,
     band_components,
     band_energies,
     heights_above_means,
     level_spacings,
-    surface_shape,
     vertex_details,
 )
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -36,7 +35,6 @@ __all__ = [
     "scale_layer",
     "scale_map_columns",
     "scale_map_names",
-    "shape_columns",
     "shape_layer",
     "vertex_layer",
 ]
@@ -82,18 +80,6 @@ def component_columns(
     """
     components = band_components(geo.pyramid, channel, progress)
     return components.bands / _file_scale(geo, channel or "z")
-
-
-def shape_columns(mesh: TriangleMesh) -> FloatArray:
-    """Slope and aspect in degrees and four curvatures at the vertices, ``(n_vertices, 6)``.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        In the working frame. Curvatures are in one over its unit of length.
-    """
-    shape = surface_shape(mesh)
-    return np.column_stack([shape.named(name) for name in SHAPE_NAMES])
 
 
 def residual_column(geo: GeoPyramid, level: int, progress: Progress | None = None) -> FloatArray:
@@ -149,7 +135,9 @@ def scale_map_names(geo: GeoPyramid, maps: ScaleMaps, what: str) -> tuple[str, .
     )
 
 
-def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
+def band_names(
+    geo: GeoPyramid, what: str = "rms", progress: Progress | None = None
+) -> tuple[str, ...]:
     """Name of the raster band of each level, with its spacing; the coarsest level first.
 
     Parameters
@@ -158,8 +146,10 @@ def band_names(geo: GeoPyramid, what: str = "rms") -> tuple[str, ...]:
         Whose levels are named.
     what : str
         The first word.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
-    spacings = level_spacings(geo.pyramid)[1:]
+    spacings = level_spacings(geo.pyramid, progress)[1:]
     unit = _distance_unit(geo)
     return tuple(
         f"{what} of level {level}, spacing {spacing:.3g} {unit}"
@@ -241,26 +231,29 @@ def scale_layer(
     return Layer(what, "Point Z", points_wkb(vertices), fields, vertex_style(), title, meaning)
 
 
-def shape_layer(geo: GeoPyramid, level: int, classes: NDArray[np.int8] | None = None) -> Layer:
-    """Return the vertices of a level with slope, aspect and curvatures of its surface.
+def shape_layer(
+    geo: GeoPyramid, level: int, shape: SurfaceShape, classes: NDArray[np.int8] | None = None
+) -> Layer:
+    """Return the vertices of a level with slope, aspect and curvatures.
 
     Parameters
     ----------
     geo : GeoPyramid
         What is analysed.
     level : int
-        Whose surface.
+        Whose vertices.
+    shape : SurfaceShape
+        There, in the working frame.
     classes : (n_vertices,) int8, optional
         Its landforms, as one field more: ``landform``.
     """
     mesh = geo.pyramid.mesh(level)
-    columns = shape_columns(mesh)
     vertices = geo.frame.to_file(mesh.vertices)
     fields: dict[str, NDArray] = {
         "vertex_id": geo.pyramid.vertex_ids(level),
         "elevation": vertices[:, 2],
     }
-    fields.update({name: columns[:, k] for k, name in enumerate(SHAPE_NAMES)})
+    fields.update({name: shape.named(name) for name in SHAPE_NAMES})
     if classes is not None:
         fields["landform"] = classes.astype(np.int32)
     return Layer(

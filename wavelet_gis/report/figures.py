@@ -18,7 +18,14 @@ from wavelet_gis.model.geo_pyramid import GeoPyramid
 from wavelet_gis.workflows.read_off.levels import checked_levels, default_levels
 from wavelet_gis.workflows.solver.quality import triangle_quality
 
-__all__ = ["ReportData", "report_data"]
+__all__ = ["CANCELLED", "ReportData", "report_data"]
+
+#: What is said where ``progress`` returns False.
+CANCELLED = "the report was cancelled; nothing was written."
+
+#: Share of the time in which the levels are measured; their errors by slope take the rest.
+LEVELS_SHARE = 0.85
+
 FloatArray = NDArray[np.float64]
 
 #: Classes of slope, in degrees, over which the error is broken down.
@@ -80,19 +87,24 @@ def report_data(
     finest = pyramid.synthesise()
     points = _points_of(geo, finest)
     rows, shown, errors = [], {pyramid.n_levels: finest}, {}
+    # a level costs its own triangles, and one look from each point of the input
+    sizes = [pyramid.n_vertices(level) for level in range(len(pyramid))]
+    ends = np.cumsum(np.array(sizes) + finest.n_vertices)
     for level, mesh in enumerate(pyramid):
         distance = surface_errors(mesh, points.places) / geo.frame.z_scale
         rows.append(_level_row(geo, level, mesh, finest, distance))
         if level in chosen:
             shown[level], errors[level] = mesh, distance
-        report(
-            progress, (level + 1) / len(pyramid), "the report was cancelled; nothing was written."
-        )
+        report(progress, LEVELS_SHARE * float(ends[level] / ends[-1]), CANCELLED)
+    by_slope = []
+    for k, level in enumerate(chosen, 1):
+        by_slope.append(_error_figures(geo, finest, points, level, errors[level]))
+        report(progress, LEVELS_SHARE + (1.0 - LEVELS_SHARE) * k / len(chosen), CANCELLED)
     figures = {
         "source": _source_figures(geo, finest),
         "levels": rows[::-1],
         "details": _detail_figures(geo),
-        "shown": [_error_figures(geo, finest, points, level, errors[level]) for level in chosen],
+        "shown": by_slope,
         "parameters": dict(pyramid.parameters),
         "history": list(geo.history),
         "notes": [note.to_dict() for note in geo.notes],

@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from wavelet_core import Progress
+from wavelet_core.progress import part_of, report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
-from wavelet_gis.report.figures import ReportData, report_data
+from wavelet_gis.report.figures import CANCELLED, ReportData, report_data
 from wavelet_gis.report.pictures import (
     difference_png,
     exaggeration_of,
@@ -21,6 +22,9 @@ from wavelet_gis.report.pictures import (
 )
 
 __all__ = ["report_page"]
+
+#: Share of the time in which the levels are measured; the pictures take the rest.
+MEASURED_SHARE = 0.9
 
 
 def report_page(
@@ -54,13 +58,13 @@ def report_page(
     Cancelled
         ``progress`` returned False.
     """
-    data = report_data(geo, levels, progress)
+    data = report_data(geo, levels, part_of(progress, 0.0, MEASURED_SHARE))
     figures = plain(data.figures)
     unit = _unit(geo)
     body = "\n".join(
         [
             _head(figures, unit),
-            _pictures(data, figures, unit),
+            _pictures(data, figures, unit, part_of(progress, MEASURED_SHARE, 1.0)),
             _charts(figures, unit),
             _level_table(figures, unit),
             _where(figures, unit),
@@ -128,7 +132,9 @@ def _kind(source: dict[str, Any]) -> str:
     return {"raster": "A raster", "points": "A point cloud"}.get(source["kind"], "A TIN")
 
 
-def _pictures(data: ReportData, figures: dict[str, Any], unit: str) -> str:
+def _pictures(
+    data: ReportData, figures: dict[str, Any], unit: str, progress: Progress | None
+) -> str:
     finest_level = figures["source"]["n_levels"]
     finest = data.shown[finest_level]
     grid = picture_grid(finest)
@@ -142,7 +148,7 @@ def _pictures(data: ReportData, figures: dict[str, Any], unit: str) -> str:
         )
     ]
     differences = []
-    for level, errors in data.errors.items():
+    for k, (level, errors) in enumerate(data.errors.items(), 1):
         row = rows[level]
         shades.append(
             _picture(
@@ -161,6 +167,7 @@ def _pictures(data: ReportData, figures: dict[str, Any], unit: str) -> str:
                 level,
             )
         )
+        report(progress, k / len(data.errors), CANCELLED)
     lit = "Lit from the north-west"
     scale = f", heights times {exaggeration:.2g}" if abs(exaggeration - 1) > 0.005 else ""
     return (

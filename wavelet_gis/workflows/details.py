@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import Progress, ScaleMaps, TriangleMesh
+from wavelet_core import Progress, ScaleMaps
 from wavelet_core.errors import OptionError
 from wavelet_core.features.landforms import LANDFORMS, landforms
 from wavelet_core.features.scale_maps import (
@@ -19,7 +19,9 @@ from wavelet_core.features.scale_maps import (
 )
 from wavelet_core.features.shape import SHAPE_NAMES, SurfaceShape, surface_shape
 from wavelet_core.features.spectrum import vertex_details
+from wavelet_core.features.window_shape import level_between, window_shape
 from wavelet_core.lifting.spacings import level_spacings
+from wavelet_core.progress import part_of
 from wavelet_gis.errors import OutputFileError, TerrainWarning
 from wavelet_gis.io.formats import PYRAMID_SUFFIX, RASTER_SUFFIXES, suffix_of
 from wavelet_gis.model.dem import GridGeometry
@@ -40,7 +42,7 @@ from wavelet_gis.products.vertex_tables import (
 )
 from wavelet_gis.workflows.options import HoldsPyramid, metre_of, pyramid_of, require_levels
 
-__all__ = ["QUANTITIES", "Details", "LevelDetails", "Quantity", "details"]
+__all__ = ["FITS", "QUANTITIES", "Details", "Fit", "LevelDetails", "Quantity", "details"]
 
 #: What may be asked for: root mean square detail around each vertex, a column per level; what each
 #: level adds, signed; the level at which each vertex went; slope, aspect and curvatures of a level;
@@ -53,6 +55,14 @@ QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 #: Those of one level.
 OF_ONE_LEVEL = ("shape", "landforms", "residual")
+
+#: What quadratics of shape and landforms are fitted to: all that lies within windows of the level's
+#: distance, or the neighbours of each vertex on the surface of the level.
+Fit = Literal["windows", "surface"]
+FITS: tuple[Fit, ...] = get_args(Fit)
+
+#: Those of one level that have a fit.
+FITTED = ("shape", "landforms")
 
 #: Those that compare scales, with the function that does, and what their values are.
 _BY_SCALE = {
@@ -96,6 +106,10 @@ class Details:
         Whose energy or component; None is the geometry.
     flat_slope, flat_curvature : float
         See `wavelet_core.landforms`.
+    fit : str
+        Of shape and landforms, see `Fit`.
+    distance : float
+        Of whose size windows are, in the working unit.
     """
 
     geo: GeoPyramid
@@ -104,6 +118,8 @@ class Details:
     channel: str | None
     flat_slope: float = 1.0
     flat_curvature: float = 1e-4
+    fit: Fit = "windows"
+    distance: float = float("nan")
 
     def levels(self) -> list[LevelDetails]:
         """Return how strong the details of each level are, the coarsest first."""
@@ -133,25 +149,28 @@ class Details:
         """
         geo = self.geo
         if self.what in _BY_SCALE:
-            maps = self._scale_maps(progress)
+            maps = self._scale_maps(part_of(progress, 0.0, 0.8))
             names = scale_map_names(geo, maps, self.what)
             finest = geo.pyramid.synthesise()
-            return value_bands(geo, finest, scale_map_columns(maps), names, cell_size)
+            columns, part = scale_map_columns(maps), part_of(progress, 0.8, 1.0)
+            return value_bands(geo, finest, columns, names, cell_size, part)
         if self.what == "residual":
-            column = residual_column(geo, self.level, progress)[:, None]
+            column = residual_column(geo, self.level, part_of(progress, 0.0, 0.8))[:, None]
             name = f"height above the mean around, level {self.level}"
             return value_bands(geo, geo.pyramid.synthesise(), column, (name,), cell_size)
+        if self.what in FITTED:
+            shape, geometry = self._cell_shape(cell_size, progress)
+            if self.what == "landforms":
+                return self._landforms(shape, geometry)
+            return _shape_bands(shape, geometry)
         mesh = geo.pyramid.mesh(self.level)
         if self.what == "level":
             name = "level at which a vertex went"
             return label_band(geo, mesh, vertex_details(geo.pyramid).level, name, cell_size)
-        if self.what == "shape":
-            return _shape_bands(geo, mesh, cell_size)
-        if self.what == "landforms":
-            return self._landform_band(mesh, cell_size)
         columns_of, word = _BY_LEVEL[self.what]
-        columns = columns_of(geo, self.channel, progress)
-        return value_bands(geo, mesh, columns, band_names(geo, word), cell_size)
+        columns = columns_of(geo, self.channel, part_of(progress, 0.0, 0.15))
+        names = band_names(geo, word, part_of(progress, 0.15, 0.5))
+        return value_bands(geo, mesh, columns, names, cell_size, part_of(progress, 0.5, 1.0))
 
     def layer(self, progress: Progress | None = None) -> Layer:
         """Return the vertices as a layer.
@@ -165,11 +184,10 @@ class Details:
             Called with a fraction in [0, 1]; the work stops when it returns False.
         """
         geo = self.geo
-        if self.what == "shape":
-            return shape_layer(geo, self.level)
-        if self.what == "landforms":
-            shape = surface_shape(geo.pyramid.mesh(self.level))
-            return shape_layer(geo, self.level, self._classes(shape))
+        if self.what in FITTED:
+            shape = self._shape(self.level, progress)
+            classes = self._classes(shape) if self.what == "landforms" else None
+            return shape_layer(geo, self.level, shape, classes)
         if self.what == "residual":
             column = residual_column(geo, self.level, progress)[:, None]
             meaning = "Height above the mean of the surroundings, in the input's unit of z"
@@ -218,8 +236,31 @@ class Details:
     def _classes(self, shape: SurfaceShape) -> NDArray[np.int8]:
         return landforms(shape, flat_slope=self.flat_slope, flat_curvature=self.flat_curvature)
 
-    def _landform_band(self, mesh: TriangleMesh, cell_size: float | None) -> Bands:
-        shape, geometry = _cell_shape(self.geo, mesh, cell_size)
+    def _shape(self, at: int, progress: Progress | None) -> SurfaceShape:
+        """Return the shape at the vertices of a level."""
+        if self.fit == "windows":
+            return window_shape(self.geo.pyramid, self.distance, at=at, progress=progress)
+        return surface_shape(self.geo.pyramid.mesh(at))
+
+    def _cell_shape(
+        self, cell_size: float | None, progress: Progress | None
+    ) -> tuple[SurfaceShape, GridGeometry]:
+        """Return the shape at the cells of a grid, row by row.
+
+        Slopes in x and y, and second derivatives, are what is interpolated between vertices: half
+        way between an aspect of 350 and one of 10 degrees is north, not south.
+        """
+        pyramid, at = self.geo.pyramid, self.level
+        if self.fit == "windows":
+            at = max(at, level_between(pyramid, self.distance))
+        shape = self._shape(at, part_of(progress, 0.0, 0.7))
+        columns, names = np.column_stack([shape.gradient, shape.hessian]), ("p", "q", "r", "s", "t")
+        part = part_of(progress, 0.7, 1.0)
+        parts = value_bands(self.geo, pyramid.mesh(at), columns, names, cell_size, part)
+        cells = parts.values.reshape(len(parts.names), -1).T.astype(np.float64)
+        return SurfaceShape(cells[:, :2], cells[:, 2:]), parts.geometry
+
+    def _landforms(self, shape: SurfaceShape, geometry: GridGeometry) -> Bands:
         classes = self._classes(shape)
         labels = np.where(classes < 0, NO_LABEL, classes).astype(np.uint8)
         kinds = ", ".join(f"{k} {name}" for k, name in enumerate(LANDFORMS))
@@ -230,26 +271,10 @@ class Details:
         return {"what": self.what, "levels": [row._asdict() for row in self.levels()]}
 
 
-def _shape_bands(geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None) -> Bands:
-    """Return the shape of a surface by cell, one band a measure."""
-    shape, geometry = _cell_shape(geo, mesh, cell_size)
+def _shape_bands(shape: SurfaceShape, geometry: GridGeometry) -> Bands:
+    """Return the shape at the cells of a grid as one band a measure."""
     values = np.stack([shape.named(name).astype(np.float32) for name in SHAPE_NAMES])
     return Bands(values.reshape(-1, *geometry.shape), SHAPE_NAMES, geometry)
-
-
-def _cell_shape(
-    geo: GeoPyramid, mesh: TriangleMesh, cell_size: float | None
-) -> tuple[SurfaceShape, GridGeometry]:
-    """Return the shape of a surface at the cells of a grid, row by row.
-
-    Slopes in x and y, and second derivatives, are what is interpolated between vertices: half way
-    between an aspect of 350 and one of 10 degrees is north, not south.
-    """
-    at_vertices = surface_shape(mesh)
-    columns = np.column_stack([at_vertices.gradient, at_vertices.hessian])
-    parts = value_bands(geo, mesh, columns, ("p", "q", "r", "s", "t"), cell_size)
-    cells = parts.values.reshape(len(parts.names), -1).T.astype(np.float64)
-    return SurfaceShape(cells[:, :2], cells[:, 2:]), parts.geometry
 
 
 def details(
@@ -261,6 +286,7 @@ def details(
     channel: str | None = None,
     flat_slope: float | None = None,
     flat_curvature: float | None = None,
+    fit: Fit | None = None,
 ) -> Details:
     """Return what the scales of a pyramid hold, to be shown as a raster, a layer or figures.
 
@@ -280,6 +306,9 @@ def details(
         Of energy and component; by default the geometry.
     flat_slope, flat_curvature : float, optional
         Of landforms, see `wavelet_core.landforms`; 1 degree and 1e-4 by default.
+    fit : str, optional
+        Of shape and landforms, see `Fit`: windows of the distance (or of the spacing of the level)
+        by default.
 
     Raises
     ------
@@ -297,6 +326,11 @@ def details(
         )
     check_options_of(what, level=level, metres=metres)
     check_options_of(what, flat_slope=flat_slope, flat_curvature=flat_curvature)
+    check_options_of(what, fit=fit)
+    if fit is not None and fit not in FITS:
+        raise OptionError(
+            "{0} is {fit!r}; give one of {known}.", "fit", fit=fit, known=", ".join(FITS)
+        )
     if channel is not None and what not in ("energy", "component", "level"):
         raise OptionError(
             "{0} is not for {1} {what}, which is of z; leave it out.", "channel", "what", what=what
@@ -312,11 +346,16 @@ def details(
         chosen = level
     geo.pyramid.n_vertices(chosen)  # refuses a level that is not there
     bounds = {"flat_slope": flat_slope, "flat_curvature": flat_curvature}
-    given = {name: bound for name, bound in bounds.items() if bound is not None}
+    given: dict[str, Any] = {name: bound for name, bound in bounds.items() if bound is not None}
+    if what in FITTED:
+        spacing = float(level_spacings(geo.pyramid)[chosen])
+        given["distance"] = spacing if metres is None else metres * metre_of(geo)
+        # a level without faces has no spacing, and no shape by either fit
+        given["fit"] = "surface" if np.isnan(spacing) else fit or "windows"
     return Details(geo, what, chosen, channel, **given)
 
 
-def check_options_of(what: str, **options: float | None) -> None:
+def check_options_of(what: str, **options: float | str | None) -> None:
     """Raise `OptionError` for options that are given for what they are not, or exclude each other.
 
     Parameters
@@ -324,7 +363,7 @@ def check_options_of(what: str, **options: float | None) -> None:
     what : str
         See `Quantity`.
     **options : float, optional
-        ``level`` and ``metres``, or the bounds of flat ground.
+        ``level`` and ``metres``, the bounds of flat ground, or ``fit``.
     """
     given = [name for name, value in options.items() if value is not None]
     for name in given:
@@ -334,7 +373,11 @@ def check_options_of(what: str, **options: float | None) -> None:
                 name,
                 "what",
             )
-        if name not in ("level", "metres") and what != "landforms":
+        if name == "fit" and what not in FITTED:
+            raise OptionError(
+                "{0} is for {1} shape or landforms; leave it out, or ask for one.", name, "what"
+            )
+        if name.startswith("flat") and what != "landforms":
             raise OptionError(
                 "{0} is for {1} landforms; leave it out, or ask for them.", name, "what"
             )

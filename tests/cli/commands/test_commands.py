@@ -75,7 +75,7 @@ def test_layers_in_proportion_tell_what_they_leave_out(done, tif, tmp_path, monk
     assert 0 < n_details < pyramid.n_levels
     n_features = pyramid.n_vertices(n_details) + pyramid.n_faces(0)
     assert n_features <= 2000 < n_features + pyramid.steps[n_details].n_odd
-    left_out = f"details of the {pyramid.n_levels - n_details} finest levels"
+    left_out = f"details of the finest levels ({pyramid.n_levels - n_details}),"
     assert left_out in said.out
     assert "--layers all" in said.out
 

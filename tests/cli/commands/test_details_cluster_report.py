@@ -156,12 +156,38 @@ def test_landforms_of_a_distance_on_the_ground(run):
     np.testing.assert_array_equal(values["landform"], forms.ravel())
 
 
+def test_shape_is_fitted_to_windows_or_to_the_surface(run, folder):
+    from wavelet_core import level_spacings, surface_shape, window_shape
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid
+
+    pyramid = read_pyramid(folder / "d.gpkg").pyramid
+    shapes = {
+        (): window_shape(pyramid, level_spacings(pyramid)[3], at=3),
+        ("--fit", "windows"): window_shape(pyramid, level_spacings(pyramid)[3], at=3),
+        ("--fit", "surface"): surface_shape(pyramid.mesh(3)),
+    }
+    for options, shape in shapes.items():
+        arguments = ("--what", "shape", "--level", "3", *options)
+        _, path, _ = run("details", "d.gpkg", f"fit{len(options)}{options[-1:]}.gpkg", *arguments)
+        meta, _, _, columns = pyogrio.raw.read(path, layer="shape_level_03")
+        values = dict(zip(meta["fields"], columns, strict=True))
+        np.testing.assert_allclose(values["mean"], shape.mean, atol=1e-12)
+    of_metres = window_shape(pyramid, 33.0)
+    wide = ("--what", "shape", "--level-metres", "33")
+    _, path, _ = run("details", "d.gpkg", "wide.tif", *wide)
+    with rasterio.open(path) as dataset:
+        slope = dataset.read(1).ravel()
+    assert np.corrcoef(slope, of_metres.slope)[0, 1] > 0.99  # which is interpolated between
+    np.testing.assert_allclose(slope.mean(), of_metres.slope.mean(), rtol=0.02)
+
+
 def test_options_of_other_maps_are_refused(run, folder):
     def said(*options):
         return run("details", "d.gpkg", "x.tif", *options)[2]
 
     assert "--level-metres is for --what shape" in said("--level-metres", "20")
     assert "--flat-slope is for --what landforms" in said("--what", "shape", "--flat-slope", "2")
+    assert "--fit is for --what shape or landforms" in said("--fit", "surface")
     both = said("--what", "shape", "--level", "1", "--level-metres", "20")
     assert "--level and --level-metres exclude each other" in both
     far = said("--what", "residual", "--level-metres", "1e6")

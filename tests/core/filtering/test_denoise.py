@@ -197,3 +197,11 @@ def test_a_sigma_above_the_noise_smooths():
     ]
     assert left[0] > 3 * left[1] > 3 * left[2]
     assert left[4] < 0.25 * left[0]
+
+
+@pytest.mark.parametrize("n_vertices", [0, 3])
+def test_a_mesh_without_faces_has_no_noise(n_vertices):
+    """The mean of no vertices was taken, with two warnings."""
+    vertices = np.arange(3.0 * n_vertices).reshape(-1, 3)
+    clean = denoise(TriangleMesh(vertices, np.empty((0, 3), int)))
+    assert np.array_equal(clean.vertices, vertices)

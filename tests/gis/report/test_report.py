@@ -150,6 +150,17 @@ def test_a_report_can_be_stopped(raster_record):
         report_page(raster_record, progress=lambda fraction: fraction < 0.5)
 
 
+def test_errors_by_slope_and_pictures_are_in_its_progress(raster_record):
+    """All was reported before them, and a bar stood for seven seconds."""
+    seen = []
+    report_page(raster_record, [2, 1, 0], lambda fraction: seen.append(fraction) or True)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    n_levels = raster_record.pyramid.n_levels + 1
+    assert len(seen) == n_levels + 3 + 3
+    assert seen[n_levels - 1] < 0.8
+
+
 def test_a_cloud_has_a_report_too(cloud_record):
     page, figures = report_page(cloud_record)
     assert figures["source"]["channels"] == ["z", "classification", "hag", "intensity"]

@@ -56,6 +56,18 @@ def test_a_band_is_that_of_the_later_survey_less_that_of_the_earlier(surveys):
     np.testing.assert_allclose(change.columns, np.column_stack(expected), atol=1e-9)
 
 
+def test_the_figures_of_the_bands_are_in_the_progress(surveys):
+    """The spacings of a million vertices were looked for after the last word."""
+    folder, *_ = surveys
+    later, seen = wg.analyse(wg.open(folder / "after.tif"), **BANDS), []
+    wg.change_by_scale(
+        later, folder / "before.tif", progress=lambda fraction: seen.append(fraction) or True
+    )
+    assert seen == sorted(seen)
+    assert seen[-1] == pytest.approx(1.0)
+    assert sum(fraction > 0.7 for fraction in seen) > 3
+
+
 def test_nothing_has_changed_in_the_same_survey(surveys):
     folder, *_ = surveys
     later = wg.analyse(wg.open(folder / "after.tif"), **BANDS)

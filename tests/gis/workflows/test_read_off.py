@@ -273,6 +273,22 @@ class TestMeshQuality:
         with pytest.raises(OptionError, match="no level 6"):
             wg.mesh_quality(plane, levels=[6])
 
+    def test_progress_counts_vertices_not_levels(self, plane):
+        """The finest of many levels takes a quarter of the time, and had a twelfth of the bar."""
+        seen = []
+        rows = wg.mesh_quality(plane, progress=lambda fraction: seen.append(fraction) or True)
+        sizes = np.cumsum([row.n_vertices for row in rows])
+        assert seen[2::3] == pytest.approx(sizes / sizes[-1])
+        assert seen == sorted(seen)
+
+
+def test_the_bands_of_energy_report_what_follows_their_columns(plane):
+    """Naming the bands takes three times as long as their columns, after which all was said."""
+    seen = []
+    wg.details(plane).raster(progress=lambda fraction: seen.append(fraction) or True)
+    assert seen == sorted(seen)
+    assert sum(fraction > 0.15 for fraction in seen) > 5
+
 
 def test_aspects_around_north_are_not_averaged_to_the_south(tmp_path):
     y, x = np.mgrid[0:40, 0:50]

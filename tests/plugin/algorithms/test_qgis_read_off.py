@@ -136,6 +136,19 @@ class TestShape:
         assert coarse[1] < 0.8 * fine[1]
         assert coarse[0] == pytest.approx(fine[0], rel=0.1)
 
+    def test_shape_is_of_windows_or_less_smooth_of_the_surface(self, run, made, tmp_path):
+        bent = {}
+        for fit in (None, "windows", "surface"):
+            path = str(tmp_path / f"{fit}.tif")
+            given = {} if fit is None else {"FIT": fit}
+            run(
+                "shapeoflevel",
+                {"INPUT": str(made / "p.gpkg"), "LEVEL": 2, "MEAN_CURVATURE": path, **given},
+            )
+            bent[fit] = numbers(path)
+        assert np.array_equal(bent[None], bent["windows"])
+        assert np.nanstd(bent["surface"]) > np.nanstd(bent["windows"])
+
     def test_they_open_in_colours_that_mean_something(self, opened, made):
         layers = opened(
             "shapeoflevel",
@@ -200,6 +213,30 @@ class TestDifference:
             {"INPUT": str(made / "p.gpkg"), "LESS_DEM": other, "OUTPUT": str(tmp_path / "d.tif")},
         )
         assert "reproject it" in told
+
+
+class TestChangeByScale:
+    def test_a_mound_is_found_in_the_coarse_bands(self, run, made, tmp_path):
+        from osgeo import gdal
+
+        y, x = np.mgrid[0 : hills().shape[0], 0 : hills().shape[1]]
+        mound = 3.0 * np.exp(-((x - 20) ** 2 + (y - 15) ** 2) / 60.0)
+        earlier = write_raster(tmp_path / "before.tif", (hills() - mound).astype("float32"))
+        output = str(tmp_path / "change.tif")
+        found = run(
+            "changebyscale", {"INPUT": str(made / "p.gpkg"), "EARLIER": earlier, "OUTPUT": output}
+        )
+        assert found["HIGHEST"] == pytest.approx(3.0, abs=0.01)
+        assert found["LOWEST"] == pytest.approx(0.0, abs=0.01)
+        bands = gdal.Open(output).ReadAsArray()
+        assert bands[0] == pytest.approx(mound, abs=1e-3)
+        assert bands[1:].sum(axis=0) == pytest.approx(bands[0], abs=1e-3)
+        assert np.abs(bands[1:-1].sum(axis=0)).max() > 3 * np.abs(bands[-1]).max()
+
+    def test_an_earlier_dem_in_another_crs_is_refused(self, refused, made, tmp_path):
+        other = write_raster(tmp_path / "o.tif", hills().astype("float32"), epsg=32631)
+        parameters = {"INPUT": str(made / "p.gpkg"), "OUTPUT": str(tmp_path / "d.tif")}
+        assert "reproject it" in refused("changebyscale", {**parameters, "EARLIER": other})
 
 
 def test_the_mesh_quality_is_a_table(run, made):

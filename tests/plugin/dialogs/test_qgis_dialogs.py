@@ -29,6 +29,7 @@ ALGORITHMS = (
     "profile",
     "shapeoflevel",
     "difference",
+    "changebyscale",
     "meshquality",
     "dem_to_coarse_tin",
     "dem_to_hydraulic_mesh",

@@ -9,6 +9,7 @@ IDS = {
     "analysedem",
     "analysepointcloud",
     "analysetin",
+    "changebyscale",
     "classifyground",
     "clusterdetails",
     "detaillayers",

@@ -48,6 +48,8 @@ def estimate_noise(mesh: TriangleMesh, values: ArrayLike | None = None) -> float
     1994.
     """
     z = mesh.vertices[:, 2] if values is None else np.asarray(values, dtype=np.float64)
+    if not mesh.n_faces:
+        return 0.0
     plan = mesh.vertices[:, :2] - mesh.vertices[:, :2].mean(axis=0)
     connectivity = build_connectivity(mesh.faces.astype(np.int32), mesh.n_vertices)
     has_ring = np.isin(connectivity.kind, (INTERIOR, BOUNDARY)) & (connectivity.ring_size >= 4)

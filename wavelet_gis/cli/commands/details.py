@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="energy",
         help="energy: root mean square detail around each vertex, one raster band per level "
         "(default); component: what each level adds, signed; level: at which each vertex went; "
-        "shape: slope, aspect and curvatures of the surface of --level; landforms: its planar "
+        "shape: slope, aspect and curvatures at the scale of --level; landforms: planar "
         "ground, pits, channels, passes, ridges and peaks (0 to 5); residual: height above the "
         "mean of surroundings of the size of --level; roughness: degrees between the surface and "
         "the smooth one of each scale; deviation: standard deviations above the surroundings at "
@@ -62,6 +62,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="M",
         help="instead of --level: the one whose spacing on the ground is nearest to this, in "
         "metres where the CRS states its unit, else in its own; 'details' lists the spacings",
+    )
+    parser.add_argument(
+        "--fit",
+        choices=("windows", "surface"),
+        help="of shape and landforms: windows: to all that lies within windows of the distance, "
+        "two and a half spacings wide (default); surface: to the neighbours of each vertex on the "
+        "surface of the level, as extract writes it",
     )
     parser.add_argument(
         "--flat-slope",
@@ -99,10 +106,12 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     flat = {"flat_slope": arguments.flat_slope, "flat_curvature": arguments.flat_curvature}
     check_options_of(arguments.what, **of_level)
     check_options_of(arguments.what, **flat)
+    check_options_of(arguments.what, fit=arguments.fit)
     found = details(
         load(arguments.file),
         what=arguments.what,
         channel=arguments.channel,
+        fit=arguments.fit,
         **of_level,
         **flat,
     )

@@ -73,19 +73,21 @@ class ChangeByScale:
         total: FloatArray = self.columns.sum(axis=1)
         return total
 
-    def raster(self, cell_size: float | None = None) -> Bands:
+    def raster(self, cell_size: float | None = None, progress: Progress | None = None) -> Bands:
         """Return the change as a raster: all of it, then one band for each column.
 
         Parameters
         ----------
         cell_size : float, optional
             In the input's unit of x and y; by default the grid of the input.
+        progress : callable, optional
+            Called with a fraction in [0, 1]; the work stops when it returns False.
         """
         values = np.where(self.is_known, np.column_stack([self.total, self.columns]).T, np.nan).T
         sizes = [f"{band.spacing:.4g}" for band in self.bands]
         names = ["change", f"base, above {sizes[0]}", *(f"spacing {size}" for size in sizes[1:])]
         mesh = self.geo.pyramid.synthesise()
-        return value_bands(self.geo, mesh, values, names, cell_size)
+        return value_bands(self.geo, mesh, values, names, cell_size, progress)
 
     def write(
         self, path: str | os.PathLike[str], *, cell_size: float | None = None
@@ -169,12 +171,13 @@ def change_by_scale(
     )
     lifted = relifted(geo.pyramid, change)
     report(progress, 0.5)
-    components = band_components(lifted, "z", part_of(progress, 0.5, 1.0))
+    components = band_components(lifted, "z", part_of(progress, 0.5, 0.7))
     altered = geo.with_pyramid(lifted, f"change since {terrain.name}")
     unit = geo.frame.z_scale
     levels = joined_levels(lifted)
     columns = _columns(components, levels) / unit
-    return ChangeByScale(altered, columns, is_known, _bands(altered, levels, columns, is_known))
+    bands = _bands(altered, levels, columns, is_known, part_of(progress, 0.7, 1.0))
+    return ChangeByScale(altered, columns, is_known, bands)
 
 
 def _opened(path: str | os.PathLike[str]) -> Terrain:
@@ -223,8 +226,9 @@ def _bands(
     levels: list[tuple[int, int]],
     columns: FloatArray,
     is_known: NDArray[np.bool_],
+    progress: Progress | None,
 ) -> tuple[ChangeBand, ...]:
-    spacings = level_spacings(geo.pyramid)
+    spacings = level_spacings(geo.pyramid, progress)
     rows = [(None, spacings[0]), *(((a, b - 1), spacings[b]) for a, b in levels)]
     return tuple(
         ChangeBand(

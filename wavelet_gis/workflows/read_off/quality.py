@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from wavelet_core import Progress
 from wavelet_core.progress import report
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -13,6 +15,9 @@ from wavelet_gis.workflows.read_off.levels import checked_levels
 from wavelet_gis.workflows.solver.quality import quality_of, triangle_quality
 
 __all__ = ["LevelQuality", "mesh_quality"]
+
+#: Shares of a level's time until its mesh is there, and until its smallest angles are sorted.
+REBUILT_SHARE, SORTED_SHARE = 0.3, 0.7
 
 
 class LevelQuality(NamedTuple):
@@ -66,10 +71,14 @@ def mesh_quality(
     geo = pyramid_of(data)
     n_levels = geo.pyramid.n_levels
     chosen = checked_levels(geo, list(range(n_levels + 1)) if levels is None else list(levels))
+    ends = np.cumsum([geo.pyramid.n_vertices(level) for level in range(n_levels + 1)])
     rows = []
     for level, mesh in enumerate(geo.pyramid):
+        before = ends[level] - mesh.n_vertices
+        report(progress, (before + REBUILT_SHARE * mesh.n_vertices) / ends[-1])
         if level in chosen:
             shape, nan = triangle_quality(mesh), float("nan")
+            report(progress, (before + SORTED_SHARE * mesh.n_vertices) / ends[-1])
             extremes = quality_of(mesh) if mesh.n_faces else None
             rows.append(
                 LevelQuality(
@@ -84,5 +93,5 @@ def mesh_quality(
                     *((nan,) * 4 if extremes is None else extremes[2:]),
                 )
             )
-        report(progress, (level + 1) / (n_levels + 1))
+        report(progress, ends[level] / ends[-1])
     return rows
