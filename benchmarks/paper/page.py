@@ -35,7 +35,7 @@ def tables(results: dict[str, Any]) -> dict[str, list[str]]:
         made["noise"] = noise_table(results["noise"])
     if "frequency" in results:
         made["frequency"] = frequency_table(results["frequency"])
-    if "readings" in results:
+    if readings.are_whole(results.get("readings", {})):
         made["reading errors"] = readings.error_table(results["readings"])
         made["readings"] = readings.claim_table(results["readings"])
     return made
@@ -60,18 +60,17 @@ def rmse_table(one: dict[str, Any]) -> list[str]:
                 f"{number(design['rmse_coefficients'], k)} / {number(design['rmse_surface'], k)}"
                 for k in steps
             ]
-            rows.append([prediction + update, *cells, *shares(design, one["n_vertices"])])
+            rows.append([prediction + update, *cells, *left_over(design)])
     fixed = one["GLMN_z"]
     cells = [f"- / {number(fixed['rmse_surface'], k)}" for k in steps]
-    rows.append(["GLMN, z only", *cells, *shares(fixed, one["n_vertices"])])
+    rows.append(["GLMN, z only", *cells, *left_over(fixed)])
     head = ["design", *(f"{k} steps" for k in steps), "flipped at 12", "not covered at 12"]
     return [f"{one['n_vertices']:,} vertices; {one['note']}.", "", *markdown(head, rows)]
 
 
-def shares(design: dict[str, Any], n_vertices: int) -> tuple[str, str]:
-    """Return which shares of the faces are flipped, and of the input's points not covered."""
-    not_covered = 100 * design["n_uncovered"][-1] / n_vertices
-    return f"{100 * design['flipped']:.1f} %", f"{not_covered:.2f} %"
+def left_over(design: dict[str, Any]) -> tuple[str, str]:
+    """Return which share of the faces is flipped, and how many points are not covered."""
+    return f"{100 * design['flipped']:.1f} %", f"{design['n_uncovered'][-1]:,}"
 
 
 def number(values: list[float], step: int) -> str:
@@ -82,7 +81,7 @@ def number(values: list[float], step: int) -> str:
 
 def rate_table(results: dict[str, Any]) -> list[str]:
     rows = []
-    for name, one in results.items():
+    for name, one in sorted(results.items(), key=lambda item: item[1]["figure"]):
         shares = [100 * design["share_removed"] for design in one["designs"].values()]
         rows.append([name, one["figure"], f"{min(shares):.1f} to {max(shares):.1f} %"])
     return markdown(["cloud", "stands for", "removed a step, least and most of 12 designs"], rows)

@@ -67,6 +67,13 @@ def run(
                     keep()
 
 
+def are_whole(results: dict[str, Any]) -> bool:
+    """Return whether every design has been run under every reading, and sharp places counted."""
+    clouds = results.get("clouds", {}).values()
+    rows = [cloud.get("readings", {}).get(name, {}) for cloud in clouds for name in READINGS]
+    return bool(rows) and "sharp" in results and all(set(DESIGNS) <= set(row) for row in rows)
+
+
 def sharp_places(data: Path) -> dict[str, float]:
     """Return how many of the vertices left after 8 steps are sharp, over what chance gives."""
     mesh = terrain(data, N_CELLS)

@@ -122,9 +122,10 @@ def draw_errors(
                     axis.semilogy(range(1, len(rows[kind])), rows[kind][1:], color=colour, **how)
         axes[0, column].set_title(update)
         axes[1, column].set_xlabel("analysis steps")
+        axes[1, column].set_xticks(range(0, LEVELS + 1, 4))
     axes[0, 0].set_ylabel("rmse_coefficients (Eq. 54)")
     axes[1, 0].set_ylabel("rmse_surface, unit of z")
-    axes[0, 2].legend()
+    axes[0, 0].legend(loc="lower right")
     for row in axes:
         low = min(axis.get_ylim()[0] for axis in row)
         high = min(max(axis.get_ylim()[1] for axis in row), 1e3 * low)
