@@ -59,6 +59,8 @@ def test_commands_have_the_options_that_are_shown(page):
 #: Flags of pip and of the scripts in benchmarks/ that pages name.
 OF_OTHERS = {
     "--autzen-points",
+    "--readings-points",
+    "--resume",
     "--cold",
     "--large",
     "--moves",
