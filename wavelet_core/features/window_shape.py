@@ -163,7 +163,7 @@ def level_between(pyramid: Pyramid, distance: float) -> int:
     >>> from wavelet_core import analyse, synthetic
     >>> from wavelet_core.features.window_shape import level_between
     >>> pyramid = analyse(synthetic.hills(30, 40), levels=8, partition="random")
-    >>> level_between(pyramid, 1.0), level_between(pyramid, 12.0) < 8
+    >>> level_between(pyramid, 1.0), level_between(pyramid, 60.0) < 8
     (8, True)
     """
     if not (np.isfinite(distance) and distance > 0):
