@@ -85,9 +85,10 @@ def draw(mesh: TriangleMesh, pyramid: Any, path: Path) -> None:
 
     figure, axes = plt.subplots(1, 4, figsize=(12, 3.3), constrained_layout=True)
     top = pyramid.n_levels
+    is_grid = np.prod([len(np.unique(mesh.vertices[:, k])) for k in (0, 1)]) == mesh.n_vertices
     for axis, level in zip(axes, (top, max(top - 3, 0), 0), strict=False):
         one = pyramid.mesh(level)
-        shade(axis, one.vertices, one.faces)
+        shade(axis, one.vertices, one.faces, by_height=not is_grid)
         axis.set_title(f"{top - level} steps, {one.n_vertices:,} vertices", fontsize=9)
     for level in range(pyramid.n_levels):
         detail = pyramid.detail(level)

@@ -136,7 +136,7 @@ def draw_errors(
 
 
 def draw_levels(sample: Sample, path: Path) -> None:
-    """Draw the input and the surfaces after 12 and 24 steps of UGMN, coloured by z."""
+    """Draw the input and the surfaces after 12 and 24 steps of UGMN, as hillshades."""
     import matplotlib.pyplot as plt
 
     pyramid = analyse(sample.mesh, levels=24, partition="quadric", prediction="UGMN", signal="z")
@@ -151,8 +151,8 @@ def draw_levels(sample: Sample, path: Path) -> None:
     plt.close(figure)
 
 
-def shade(axis: Any, vertices: np.ndarray, faces: np.ndarray) -> None:
-    """Draw a hillshade of a TIN, rasterised face by face."""
+def shade(axis: Any, vertices: np.ndarray, faces: np.ndarray, *, by_height: bool = False) -> None:
+    """Draw a TIN face by face, as a hillshade, or by height where all is as rough as trees."""
     if len(faces) > MAX_DRAWN_FACES:  # a window that shows as many
         share = np.sqrt(MAX_DRAWN_FACES / len(faces))
         low, extent = vertices[:, :2].min(axis=0), np.ptp(vertices[:, :2], axis=0)
@@ -162,14 +162,16 @@ def shade(axis: Any, vertices: np.ndarray, faces: np.ndarray) -> None:
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     light = normal @ (np.array([-1.0, 1.0, 1.4]) / np.linalg.norm([1.0, 1.0, 1.4]))
+    height = vertices[faces, 2].mean(axis=1)
+    low, high = np.quantile(height, [0.02, 0.98]) if by_height else (0.0, 1.0)
     axis.tripcolor(
         vertices[:, 0],
         vertices[:, 1],
         faces,
-        facecolors=np.clip(light, 0, 1),
-        cmap="gray",
-        vmin=0,
-        vmax=1,
+        facecolors=height if by_height else np.clip(light, 0, 1),
+        cmap="gist_earth" if by_height else "gray",
+        vmin=low,
+        vmax=high,
     )
     drawn = vertices[np.unique(faces)]
     axis.set(
