@@ -3,8 +3,8 @@
     python benchmarks/cost/tiles.py cloud.laz folder --copies 1x1 2x2 2x5 --tile 600 --workers 2
 
 Each size is so many rows and columns of copies of the cloud side by side, each point moved by up to
-half a spacing in x and y and by 5 cm in z, so that no two copies are alike; written as LAZ, a file a
-copy. Printed by size: points, tiles, processor time of all processes and by point, elapsed time,
+half a spacing in x and y and by 5 cm in z, so that no two copies are alike; written as LAZ, a file
+a copy. Printed by size: points, tiles, processor time of all processes and by point, elapsed time,
 the most memory of one process, bytes of all files, the error of the last level; and with
 ``--untiled`` the same of one process without tiles, which makes a TIN of as many vertices of all
 points at once. Processor time is that of all processes, as long as they live.
