@@ -13,7 +13,6 @@ import hashlib
 import json
 import os
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
@@ -68,10 +67,6 @@ POINTS_MEASURED = 200_000
 #: Points of the input, in those of a tile, that a group knows besides its vertices. All that four
 #: tiles have take 150 bytes for each vertex that a group begins with, whose analysis takes 400.
 POINTS_OF_GROUP = 4.0
-
-#: Parts of a group that are read at once. The last group has all processors to itself; more parts
-#: would take more memory than its analysis.
-_READ_AT_ONCE = 2
 
 #: What a record has, by its status; one that lacks it is damaged, and counts as none.
 _FIELDS: dict[str, dict[str, type]] = {
@@ -314,11 +309,20 @@ def level_handed_on(text: str) -> int:
 
 def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) -> GeoPyramid | None:
     """Return the pyramid of a group; None where none of its parts has a surface."""
-    if not inputs:
+    from wavelet_gis.io.pyramid.pyramid_file import read_levels
+
+    meshes, integrals = [], []
+    for name, text in inputs.items():
+        path = Path(folder) / PIECES / f"{name}.gpkg"
+        level = level_handed_on(text)
+        if handed_on(sha256_of(path), level) != text:
+            raise InputFileError(f"{path}: this is not the file that was made; tile anew.")
+        pyramid = read_levels(path, level).pyramid
+        meshes.append(pyramid.mesh(level))
+        integrals.append(pyramid.integrals(level))
+    if not meshes:
         return None
-    with ThreadPoolExecutor(min(os.cpu_count() or 1, _READ_AT_ONCE)) as pool:
-        parts = list(pool.map(lambda part: _part(folder, *part), inputs.items()))
-    whole = join(plan, [mesh for mesh, _ in parts], [integrals for _, integrals in parts])
+    whole = join(plan, meshes, integrals)
     points, sample = _points_of(folder, plan, piece, whole.cells)
     rows, columns = np.divmod(whole.cells, plan.shape[1])
     locked = plan.is_shared(piece, rows, columns)
@@ -343,18 +347,6 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
     # of a larger one knows part of them, and all that are its vertices, which would count too much.
     is_all = plan.is_error_guided and piece.stage == 1
     return geo.with_errors(points=None if is_all else sample)
-
-
-def _part(folder: str, name: str, text: str) -> tuple[TriangleMesh, NDArray[np.float64]]:
-    """Return the level of a part that a group begins with, and its integrals."""
-    from wavelet_gis.io.pyramid.pyramid_file import read_levels
-
-    path = Path(folder) / PIECES / f"{name}.gpkg"
-    level = level_handed_on(text)
-    if handed_on(sha256_of(path), level) != text:
-        raise InputFileError(f"{path}: this is not the file that was made; tile anew.")
-    pyramid = read_levels(path, level).pyramid
-    return pyramid.mesh(level), pyramid.integrals(level)
 
 
 def _points_of(
