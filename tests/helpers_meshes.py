@@ -1,4 +1,4 @@
-"""Meshes to test on: random, gridded with holes, fans, and the smallest there are."""
+"""Meshes to test on: random, gridded with holes, fans, the smallest there are; and TINs on them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.spatial import ConvexHull, Delaunay
 
 from wavelet_core import TriangleMesh
+from wavelet_core.metrics import surface_errors
 
 ATTRIBUTE_NAMES = ("class", "intensity", "hag", "red")
 
@@ -167,3 +168,40 @@ def meshes(
     if what == "triangle":
         return single_triangle(**options)
     return fan(draw(st.integers(4, 12)), closed=what == "closed fan", **options)
+
+
+def edges_of(faces):
+    return np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+
+
+def assert_refined(refined, ids, coarse, original):
+    """A TIN on input points that has no flip, no doubled edge and no gap that was not there."""
+    mesh = refined.mesh
+    assert len(np.unique(refined.vertex_ids)) == mesh.n_vertices
+    np.testing.assert_array_equal(mesh.vertices[:, :2], original.vertices[refined.vertex_ids, :2])
+    assert (mesh.plan_areas > 0).all()
+    pairs = edges_of(mesh.faces)
+    assert len(np.unique(pairs, axis=0)) == len(pairs)
+    np.testing.assert_allclose(mesh.plan_areas.sum(), coarse.plan_areas.sum(), rtol=1e-9)
+    before, after = (surface_errors(m, original.vertices) for m in (coarse, mesh))
+    np.testing.assert_array_equal(np.isnan(before), np.isnan(after))
+    # Euler: as many vertices with faces, and outlines, give as many faces
+    assert euler(mesh) == euler(coarse)
+
+
+def euler(mesh):
+    undirected = np.unique(np.sort(edges_of(mesh.faces), axis=1), axis=0)
+    return len(np.unique(mesh.faces)) - len(undirected) + mesh.n_faces
+
+
+def slow_errors(mesh, points):
+    """Return vertical errors by a search through all faces: an oracle of its own."""
+    errors = np.full(len(points), np.nan)
+    for face in mesh.faces[::-1]:
+        a, b, c = mesh.vertices[face]
+        matrix = np.array([[a[0], b[0], c[0]], [a[1], b[1], c[1]], [1.0, 1.0, 1.0]])
+        weights = np.linalg.solve(matrix, np.vstack([points[:, :2].T, np.ones(len(points))]))
+        inside = (weights >= -1e-9).all(axis=0)
+        height = weights.T @ np.array([a[2], b[2], c[2]])
+        errors[inside] = (points[:, 2] - height)[inside]
+    return errors

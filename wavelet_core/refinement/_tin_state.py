@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from .._kernels._jit import run_in_ranges
 from .._kernels.half_edges import HalfEdges
 from .._kernels.refine_flip import flip_edges, gains_of_flips
+from .._kernels.refine_merge import (
+    MAX_RIM,
+    count_polygon_points,
+    list_polygons,
+    merge_edges,
+    propose_merges,
+)
 from .._kernels.refine_move import move_vertices, propose_moves
+from .._kernels.refine_polygon import MAX_POLYGON, lay_polygons, propose_polygons
 from .._kernels.refine_replace import (
     insert_vertices,
     list_corners,
@@ -305,6 +313,69 @@ class TinState:
         self._remove(vertex, spare.target[order], spare.capacity)
         self._lives[vertex] = False
         return len(vertex)
+
+    def thin_by_polygons(self) -> int:
+        """Take out vertices whose star keeps the tolerance in any triangulation; return how many.
+
+        The cheapest first; an outline vertex only where the outline runs straight through it.
+        """
+        tin = self.tin
+        vertex = np.flatnonzero((tin.mesh.outgoing >= 0) & ~tin.is_locked).astype(np.int32)
+        counts = self._star_points(vertex)
+        capacity = int(counts.max(initial=0))
+        corners = np.empty((len(vertex), MAX_POLYGON - 2, 3), dtype=np.int8)
+        cost = np.empty(len(vertex))
+        run_in_ranges(
+            propose_polygons, len(vertex), vertex, tin, self.points, self.objective,
+            self.face_errors().error, capacity, corners, cost,
+        )  # fmt: skip
+        found = np.flatnonzero(cost < np.inf)
+        needs = np.empty((len(found), MAX_POLYGON + 1), dtype=np.int32)
+        run_in_ranges(list_stars, len(found), vertex[found], tin.mesh, needs)
+        chosen = found[self._cheapest_apart(cost[found], needs)]
+        base = self._room_for(counts[chosen])
+        run_in_ranges(
+            lay_polygons, len(chosen), vertex[chosen], corners[chosen], base, tin, self.points,
+            capacity,
+        )  # fmt: skip
+        self._lives[vertex[chosen]] = False
+        return len(chosen)
+
+    def merge(self) -> int:
+        """Put a point in place of both ends of an edge, within the tolerance; return how many.
+
+        The cheapest first; an edge with an end on the outline only where that runs straight on.
+        """
+        mesh = self.tin.mesh
+        every = np.arange(len(mesh.twin))
+        half_edges = np.flatnonzero((mesh.origin >= 0) & (mesh.twin < every)).astype(np.int32)
+        counts = np.empty(len(half_edges), dtype=np.int64)
+        run_in_ranges(
+            count_polygon_points, len(half_edges), half_edges, self.tin, self.points, counts
+        )
+        capacity = int(counts.max(initial=0))
+        to, cost = np.empty(len(half_edges), dtype=np.int32), np.empty(len(half_edges))
+        run_in_ranges(
+            propose_merges, len(half_edges), half_edges, counts, self.tin, self.points,
+            self.objective, self.face_errors().error, capacity, to, cost,
+        )  # fmt: skip
+        found = np.flatnonzero(to >= 0)
+        needs = np.empty((len(found), MAX_RIM + 3), dtype=np.int32)
+        run_in_ranges(list_polygons, len(found), half_edges[found], mesh, needs)
+        apart = self._cheapest_apart(cost[found], needs)
+        chosen, gone = found[apart], needs[apart, 1]
+        base = self._room_for(counts[chosen])
+        run_in_ranges(
+            merge_edges, len(chosen), half_edges[chosen], to[chosen], base, self.tin, self.points,
+            capacity,
+        )  # fmt: skip
+        self._lives[gone] = False
+        return len(chosen)
+
+    def _cheapest_apart(self, cost: FloatArray, needs: IndexArray) -> IntArray:
+        """Return, ascending, the cheapest rows that need no vertex of a cheaper one."""
+        order = np.argsort(cost, kind="stable")
+        return np.flatnonzero(self._first(order, needs))
 
     def _removals(self, bound: float, *, with_outline: bool) -> _Removals:
         tin = self.tin

@@ -4,7 +4,13 @@ import itertools
 
 import numpy as np
 import pytest
-from helpers_meshes import grid_with_holes, random_delaunay
+from helpers_meshes import (
+    assert_refined,
+    edges_of,
+    grid_with_holes,
+    random_delaunay,
+    slow_errors,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -45,49 +51,12 @@ def len_of(mesh):
     return mesh.n_vertices // 7
 
 
-def edges_of(faces):
-    return np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-
-
-def assert_valid(refined, ids, coarse, original):
-    """A TIN on input points that has no flip, no doubled edge and no gap that was not there."""
-    mesh = refined.mesh
-    assert len(np.unique(refined.vertex_ids)) == mesh.n_vertices
-    np.testing.assert_array_equal(mesh.vertices[:, :2], original.vertices[refined.vertex_ids, :2])
-    assert (mesh.plan_areas > 0).all()
-    pairs = edges_of(mesh.faces)
-    assert len(np.unique(pairs, axis=0)) == len(pairs)
-    np.testing.assert_allclose(mesh.plan_areas.sum(), coarse.plan_areas.sum(), rtol=1e-9)
-    before, after = (surface_errors(m, original.vertices) for m in (coarse, mesh))
-    np.testing.assert_array_equal(np.isnan(before), np.isnan(after))
-    # Euler: as many vertices with faces, and outlines, give as many faces
-    assert euler(mesh) == euler(coarse)
-
-
-def euler(mesh):
-    undirected = np.unique(np.sort(edges_of(mesh.faces), axis=1), axis=0)
-    return len(np.unique(mesh.faces)) - len(undirected) + mesh.n_faces
-
-
-def slow_errors(mesh, points):
-    """Return vertical errors by a search through all faces: an oracle of its own."""
-    errors = np.full(len(points), np.nan)
-    for face in mesh.faces[::-1]:
-        a, b, c = mesh.vertices[face]
-        matrix = np.array([[a[0], b[0], c[0]], [a[1], b[1], c[1]], [1.0, 1.0, 1.0]])
-        weights = np.linalg.solve(matrix, np.vstack([points[:, :2].T, np.ones(len(points))]))
-        inside = (weights >= -1e-9).all(axis=0)
-        height = weights.T @ np.array([a[2], b[2], c[2]])
-        errors[inside] = (points[:, 2] - height)[inside]
-    return errors
-
-
 @pytest.mark.parametrize("task", TASKS)
 @pytest.mark.parametrize("mesh_name", MESHES)
 def test_a_refined_tin_is_valid_and_no_worse(mesh_name, task):
     mesh = MESHES[mesh_name]()
     coarse, ids, refined = coarse_and_refined(mesh, task)
-    assert_valid(refined, ids, coarse, mesh)
+    assert_refined(refined, ids, coarse, mesh)
     errors = slow_errors(refined.mesh, mesh.vertices)
     covered = errors[np.isfinite(errors)]
     last, first = refined.rounds[-1], refined.rounds[0]
@@ -275,7 +244,7 @@ def test_any_cloud_gives_a_valid_tin(seed, n, share, n_attributes, scale, task):
     coarse, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
     with engine("arrays"):
         refined = refine(coarse, mesh, ids, **options)
-    assert_valid(refined, ids, coarse, mesh)
+    assert_refined(refined, ids, coarse, mesh)
 
 
 def test_more_weight_on_an_attribute_lowers_its_error():
