@@ -102,23 +102,21 @@ class SimplifyPointCloud(CloudInput, SimplifyDem):
 
     def write_more(self, request: Request, simplified: Simplified) -> Values:
         """Write the thinned file."""
-        from wavelet_gis.io.atomic import new_file
-        from wavelet_gis.io.las import write_cloud
+        from wavelet_gis.workflows.save import save
 
         path = request.output_file("THINNED")
         if not path:
             return {}
         max_error = simplified.limits
         request.stage(tr("Measuring the Delaunay TIN of the points that stay"))
-        thinned, errors = request.computed(
+        thinned = request.computed(
             lambda work: simplified.thinned(max_error, work.progress), 0.9, 0.98
         )
         request.stage(tr("Writing {}").format(tr("the thinned point cloud")))
-        with new_file(path, overwrite=True) as scratch:
-            write_cloud(scratch, thinned)
+        save(thinned, path, overwrite=True)
         return {
             "THINNED": path,
-            "N_THINNED": thinned.n_points,
-            "RMSE_THINNED": errors.rmse,
-            "MAX_ERROR_THINNED": errors.max_error,
+            "N_THINNED": thinned.cloud.n_points,
+            "RMSE_THINNED": thinned.errors.rmse,
+            "MAX_ERROR_THINNED": thinned.errors.max_error,
         }

@@ -1,9 +1,11 @@
 """The command simplify: a TIN of a size or an accuracy, and any size out of a stored pyramid."""
 
+import laspy
 import numpy as np
 import pytest
 import rasterio
 from gis.samples import hills, write_las, write_tif
+from scipy.interpolate import LinearNDInterpolator
 
 import wavelet_gis
 from wavelet_gis.io.formats import MESH_SUFFIXES
@@ -145,3 +147,51 @@ def test_kept_points_have_the_heights_of_the_input(done, dem, tmp_path):
 )
 def test_options_that_contradict_each_other_are_refused(refused, dem, tmp_path, flags, message):
     assert message in refused("simplify", dem, tmp_path / "out.ply", "--vertices", 150, *flags)
+
+
+@pytest.mark.parametrize("suffix", [".las", ".laz"])
+def test_points_that_stay_are_those_of_the_cloud(done, tmp_path, suffix):
+    cloud, thin = write_las(tmp_path / "cloud.las", 1500), tmp_path / f"thin{suffix}"
+    figures = done("simplify", cloud, thin, "--vertices", 120, "--json").figures
+    before, after = laspy.read(cloud).points.array, laspy.read(thin).points.array
+    assert len(after) == 120 == figures["thinned"]["n_points"]
+    assert set(map(bytes, after)) <= set(map(bytes, before))
+    tin = wavelet_gis.simplify(wavelet_gis.open(cloud), vertices=120, refine=0)
+    assert figures["thinned"] == tin.thinned().figures()
+    assert figures["rounds"] == []  # none unasked
+    more = done("simplify", cloud, thin, "--vertices", 120, "--refine", 1, "--overwrite", "--json")
+    assert more.figures["rounds"][1]["n_moved"] > 0
+
+
+def test_points_that_stay_keep_the_tolerance_between_them(done, tmp_path):
+    cloud, thin = write_las(tmp_path / "cloud.las", 1500), tmp_path / "thin.las"
+    run = done("simplify", cloud, thin, "--max-error", 1, "--classes", 2)
+    again = wavelet_gis.open(thin, classes=(2,))
+    every = wavelet_gis.open(cloud, classes=(2,))
+    x, y, z = every.original.coordinates()[every.origin.vertex_rows()].T
+    a, b, c = again.original.coordinates()[again.origin.vertex_rows()].T
+    surface = LinearNDInterpolator(np.column_stack([a, b]), c)  # another triangulation
+    errors = np.abs(surface(x, y) - z)
+    assert np.nanmax(errors) <= 1 + 1e-6
+    assert len(a) < len(x) / 2
+    assert f"{len(laspy.read(thin).points):,} points stay" in run.out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--cell-size", 2), "--cell-size is for a TIN or a raster"),
+        (("--cog",), "--cog is for a TIN or a raster"),
+        (("--min-angle", 20), "--min-angle is for a TIN or a raster"),
+        (("--duplicates", "mean"), "no points carry the surface"),
+    ],
+)
+def test_what_points_cannot_have_is_refused(refused, tmp_path, arguments, said):
+    cloud, thin = write_las(tmp_path / "cloud.las", 1500), tmp_path / "thin.las"
+    assert said in refused("simplify", cloud, thin, "--vertices", 120, *arguments)
+    assert not thin.exists()
+
+
+def test_a_raster_has_no_points_that_could_stay(refused, dem, tmp_path):
+    said = refused("simplify", dem, tmp_path / "thin.laz", "--vertices", 120)
+    assert "this is no point cloud" in said

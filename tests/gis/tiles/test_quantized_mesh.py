@@ -320,6 +320,26 @@ def test_points_and_levels_of_pyramids(tmp_path):
     assert coarse.figures()["n_bytes"] < fine.figures()["n_bytes"]
 
 
+def ragged_mountains():
+    """Return heights of 1,800 to 2,600 m with a ragged edge, a bay and a gap of a few cells."""
+    rng = np.random.default_rng(5)
+    values = 2200 + 20 * (hills(90, 90) - 300)
+    edge = 12 + np.cumsum(rng.integers(-3, 4, 90))
+    values[np.arange(90) < np.clip(edge, 2, 40)[:, None]] = np.nan
+    values[40:46, :60] = np.nan  # a bay
+    values[:, 75:78] = np.nan  # a gap: what is filled across it lies at the other shore
+    values[60, 75:78] = 2300.0  # with a bridge of single cells
+    return values
+
+
+def test_errors_at_a_ragged_outline_are_as_promised(tmp_path):
+    """Places for the fall to the filling, made beside one shore, stood as walls at another."""
+    place = Affine(45.0, 0.0, 300000.0, 0.0, -45.0, 4700000.0)
+    path = write_tif(tmp_path / "dem.tif", ragged_mountains(), transform=place, crs="EPSG:32631")
+    figures = wg.terrain_tiles(wg.open(path), tmp_path / "out")
+    assert [z.zoom for z in figures.zooms if z.max_error > z.promised] == []
+
+
 @pytest.mark.filterwarnings("default::wavelet_gis.errors.PointCloudWarning")
 def test_a_promise_that_is_not_kept_is_told(tmp_path):
     """Trees of 20 m beside ground two metres off: a rounded step makes metres of height."""

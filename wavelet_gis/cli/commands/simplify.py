@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from wavelet_gis.cli.commands._options import (
     add_input_arguments,
@@ -27,6 +27,7 @@ from wavelet_gis.cli.commands._options import (
 )
 from wavelet_gis.cli.console import Console
 from wavelet_gis.cli.table_help import names_from
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, suffix_of
 
 if TYPE_CHECKING:
     from wavelet_gis.workflows.simplify import Simplified
@@ -34,14 +35,16 @@ if TYPE_CHECKING:
 ORDER = 50
 HELP = (
     "Write the TIN of a number of vertices, or of an accuracy, with the least error, as "
-    f"{surface_formats()}."
+    f"{surface_formats()}; of a point cloud also its points that carry that TIN, as LAS or LAZ."
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_inputs_argument(parser)
-    parser.add_argument("output", help=f"ending in {surface_suffixes()}")
+    parser.add_argument(
+        "output", help=f"ending in {surface_suffixes()}; or in .las or .laz, for points that stay"
+    )
     rule = parser.add_mutually_exclusive_group()
     rule.add_argument("--vertices", type=int, metavar="N", help="keep so many vertices")
     add_max_error_argument(rule, "keep so many that no input vertex is farther off, vertically")
@@ -73,7 +76,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--refine",
         type=int,
         metavar="N",
-        help="rounds that move, replace and reconnect vertices; by default as many as pay",
+        help="rounds that move, replace and reconnect vertices; by default as many as pay, for "
+        "points that stay none",
     )
     rounds.add_argument(
         "--no-refine",
@@ -99,21 +103,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> None:
     """Carry the command out."""
     from wavelet_gis.workflows.lines.errors import line_about
-    from wavelet_gis.workflows.save import check_surface_output, save
+    from wavelet_gis.workflows.save import save
+    from wavelet_gis.workflows.simplification.thinning import cloud_to_thin
     from wavelet_gis.workflows.simplify import simplify
     from wavelet_gis.workflows.solver.delaunay import require_cgal
     from wavelet_gis.workflows.solver.solver_mesh import SolverRules
 
-    options = surface_options(arguments)
-    check_surface_output(
-        arguments.output, overwrite=arguments.overwrite, inputs=input_files(arguments), **options
-    )
-    solver = _solver_options(arguments)
+    is_thinning = suffix_of(arguments.output) in CLOUD_SUFFIXES
+    options, solver = surface_options(arguments), _solver_options(arguments)
+    _check_output(arguments, is_thinning, {**options, **solver})
     if solver:
         require_cgal()
         SolverRules(**solver).require_sense()
     began = perf_counter()
     terrain = open_given(arguments)
+    rounds = arguments.refine
+    if is_thinning:
+        cloud_to_thin(terrain)
+        rounds = rounds or 0  # whose points triangulate as well anew, and sooner
     with console.progress("simplifying") as progress:
         tin = simplify(
             terrain,
@@ -123,7 +130,7 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
             zone_field=arguments.zone_field,
             max_rms=arguments.max_rms,
             fit=arguments.fit,
-            refine=arguments.refine,
+            refine=rounds,
             keep_points=arguments.keep_points,
             progress=progress,
             **{**wavelet_options(arguments), "norm": arguments.norm},
@@ -132,14 +139,25 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
         with console.progress("meshing") as progress:
             tin = tin.for_solver(progress=progress, **solver)
     _say_rounds(tin, console)
-    save(tin, arguments.output, overwrite=arguments.overwrite, **options)
+    if is_thinning:
+        with console.progress("thinning") as progress:
+            thinned = tin.thinned(tin.limits, progress)
+        save(thinned, arguments.output, overwrite=arguments.overwrite)
+    else:
+        save(tin, arguments.output, overwrite=arguments.overwrite, **options)
     figures = {**tin.figures(), "seconds": round(perf_counter() - began, 3)}
     assert tin.errors is not None
-    console.say(
-        f"{figures['n_vertices']:,} of {figures['n_input_vertices']:,} vertices, "
-        f"{figures['n_triangles']:,} triangles; {tin.errors.told(terrain.vertical_unit)}; "
-        f"{figures['seconds']:.1f} s; {arguments.output}"
-    )
+    if is_thinning:
+        figures["thinned"] = thinned.figures()
+        told, n_points = thinned.errors.told(terrain.vertical_unit), thinned.cloud.n_points
+        about = f"{n_points:,} points stay, {told}, by their Delaunay triangles"
+    else:
+        told = tin.errors.told(terrain.vertical_unit)
+        about = (
+            f"{figures['n_vertices']:,} of {figures['n_input_vertices']:,} vertices, "
+            f"{figures['n_triangles']:,} triangles; {told}"
+        )
+    console.say(f"{about}; {figures['seconds']:.1f} s; {arguments.output}")
     if tin.quality is not None:
         quality = tin.quality
         console.say(
@@ -151,6 +169,26 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     if tin.along_lines is not None:
         console.say(line_about(tin.along_lines, terrain.vertical_unit))
     console.figures({"output": str(arguments.output), **figures})
+
+
+def _check_output(
+    arguments: argparse.Namespace, is_thinning: bool, of_surfaces: dict[str, Any]
+) -> None:
+    """Refuse, before the long work, an output that cannot be written, or options beside it."""
+    from wavelet_core import OptionError
+    from wavelet_gis.io.atomic import check_output
+    from wavelet_gis.workflows.save import check_surface_output
+
+    where = {"overwrite": arguments.overwrite, "inputs": input_files(arguments)}
+    if not is_thinning:
+        check_surface_output(arguments.output, **where, **surface_options(arguments))
+        return
+    check_output(arguments.output, suffixes=CLOUD_SUFFIXES, **where)
+    given = [name for name, value in of_surfaces.items() if value not in (None, False)]
+    if given:
+        raise OptionError(
+            "{0} is for a TIN or a raster; leave it out, or give an output such as .gpkg.", given[0]
+        )
 
 
 def _require_rule(parser: argparse.ArgumentParser, given: argparse.Namespace) -> None:

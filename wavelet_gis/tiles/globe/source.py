@@ -30,6 +30,10 @@ _AROUND = np.column_stack([f(np.arange(6) * (np.pi / 3)) for f in (np.cos, np.si
 FALL = 8
 
 
+#: Part of the way outside that a place around the outline must be from all vertices of the outline.
+_CLEAR = 0.7
+
+
 class GlobePoints(NamedTuple):
     """A TIN on the earth.
 
@@ -173,6 +177,7 @@ def _ring(tin: TriangleMesh, lone: FloatArray, fill: float) -> FloatArray:
 
     edges = _outline(tin.faces, tin.n_vertices)
     plan = tin.vertices[:, :2]
+    data = cKDTree(np.concatenate([plan[np.unique(edges)], lone[:, :2]]))
     tail, head = plan[edges[:, 0]], plan[edges[:, 1]]
     graph = coo_array(
         (np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(tin.n_vertices,) * 2
@@ -196,8 +201,15 @@ def _ring(tin: TriangleMesh, lone: FloatArray, fill: float) -> FloatArray:
     middle = np.concatenate([tin.vertices[rim], np.repeat(lone, len(_AROUND), axis=0)])
     away = np.concatenate([normal, np.tile(_AROUND, (len(lone), 1))])
     near, far = (np.rint(middle[:, :2] + k * spacing * away) for k in (1, FALL))
+    # What lies across a bay or a narrow gap would be a wall at the shore on its other side.
+    of_near, of_far = (
+        data.query(places)[0] >= _CLEAR * k * spacing for places, k in ((near, 1), (far, FALL))
+    )
     ring = np.concatenate(
-        [np.column_stack([near, middle[:, 2]]), np.column_stack([far, np.full(len(far), fill)])]
+        [
+            np.column_stack([near, middle[:, 2]])[of_near],
+            np.column_stack([far, np.full(len(far), fill)])[of_far],
+        ]
     )
     _, first = np.unique(ring[:, :2], axis=0, return_index=True)
     ring = ring[np.sort(first)]

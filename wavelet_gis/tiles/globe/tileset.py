@@ -419,23 +419,25 @@ def _best(
         return mesh, on_tile(mesh, tile, plan.zoom), _Off()  # level, and cut as the earth is round
     promised = plan.error_at(tile.zoom)
     kept: NDArray[np.bool_] = np.zeros(len(mesh.x), dtype=bool)
-    best: tuple[tuple[int, float], OnTile] | None = None
+    best: tuple[tuple[int, float, int], OnTile] | None = None
     for n_tried, share in enumerate(_SHARES):
         report(progress, _part_after(n_tried))
         smaller = simplified(mesh, border, tile, plan.height_step, share * promised, kept)
         report(progress, _part_after(n_tried + 0.7))
         drawn = on_tile(smaller, tile, plan.zoom)
         off, errors = _off(drawn, tile, plan, points)
-        if best is None or off < best[0]:
-            best = off, drawn
-        if off <= (0, promised):
+        is_above = ~(errors <= promised)
+        tried = *off, int(np.count_nonzero(is_above))
+        if best is None or tried < best[0]:
+            best = tried, drawn
+        if not is_above.any():
             break
-        mesh, kept = with_points(mesh, points[~(errors <= promised)], plan.height_step, kept)
+        mesh, kept = with_points(mesh, points[is_above], plan.height_step, kept)
     assert best is not None
     report(progress, _PART_OF_TRIES)
     stays = np.zeros(len(mesh.x), dtype=bool)
     handed_on = simplified(mesh, border, tile, plan.height_step, _SHARE_HANDED_ON * promised, stays)
-    (n_uncovered, worst), drawn = best
+    (n_uncovered, worst, _), drawn = best
     n_others, of_others = _off(drawn, tile, plan, source.others_in(tile))[0]
     report(progress, 1.0)
     off_at_all = _Off(worst, max(worst, of_others), n_uncovered + n_others)

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from wavelet_core import Progress
 from wavelet_core.refinement.refine import Round
 from wavelet_gis.errors import TerrainWarning
-from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import Note, warn
 from wavelet_gis.workflows.analyse import Analysis
 from wavelet_gis.workflows.extract import Surface, SurfaceErrors, measured
 from wavelet_gis.workflows.lines.errors import figures_along_lines, measured_along_lines
-from wavelet_gis.workflows.simplification.thinning import thinned
+from wavelet_gis.workflows.simplification.thinning import Thinned, thinned
 from wavelet_gis.workflows.solver.quality import MeshQuality, quality_of
 from wavelet_gis.workflows.solver.solver_mesh import SolverMesh, SolverRules, solver_mesh
 from wavelet_gis.workflows.tolerance.zone_errors import zone_errors
@@ -84,7 +83,7 @@ class Simplified(Surface):
         self,
         max_error: float | NDArray[np.float64] | None = None,
         progress: Progress | None = None,
-    ) -> tuple[PointCloud, SurfaceErrors]:
+    ) -> Thinned:
         """Return the points of a cloud that carry its surface, each as it came, and their errors.
 
         They are the vertices of the TIN. Whoever triangulates them again gets other triangles,

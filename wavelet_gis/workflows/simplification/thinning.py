@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from typing import Any, NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,12 +12,50 @@ from wavelet_core import Progress, TriangleMesh
 from wavelet_core.errors import OptionError
 from wavelet_core.mesh.location import Cover, cover_of, surface_errors
 from wavelet_core.progress import report
+from wavelet_gis.io.formats import CLOUD_SUFFIXES, any_of, suffix_of
 from wavelet_gis.model.points.cloud import PointCloud
 from wavelet_gis.model.points.origin import CloudOrigin
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.workflows.extract import SurfaceErrors, measured
 
-__all__ = ["thinned"]
+__all__ = ["Thinned", "cloud_to_thin", "thinned"]
+
+
+class Thinned(NamedTuple):
+    """The points of a cloud that carry its surface.
+
+    cloud : PointCloud, each point as it came
+    errors : SurfaceErrors, of their Delaunay triangles at all points of the surface
+    """
+
+    cloud: PointCloud
+    errors: SurfaceErrors
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write LAS or LAZ; see `wavelet_gis.workflows.save.save`.
+
+        Raises
+        ------
+        OptionError
+            Another suffix.
+        """
+        from wavelet_gis.io.las import write_cloud
+
+        if suffix_of(path) not in CLOUD_SUFFIXES:
+            raise OptionError(
+                f"{os.fspath(path)}: points of a cloud are a cloud; give an output ending in "
+                f"{any_of(CLOUD_SUFFIXES)}."
+            )
+        write_cloud(path, self.cloud)
+
+    def figures(self) -> dict[str, Any]:
+        """Return how many points there are and how far off, as JSON-able values."""
+        return {
+            "n_points": self.cloud.n_points,
+            "rmse": self.errors.rmse,
+            "max_error": self.errors.max_error,
+            "n_uncovered": self.errors.n_uncovered,
+        }
 
 
 def thinned(
@@ -22,7 +63,7 @@ def thinned(
     vertex_ids: NDArray[np.int64],
     max_error: float | NDArray[np.float64] | None = None,
     progress: Progress | None = None,
-) -> tuple[PointCloud, SurfaceErrors]:
+) -> Thinned:
     """Return the points of a cloud that are vertices of a TIN, and more where a tolerance asks.
 
     Parameters
@@ -41,7 +82,7 @@ def thinned(
     Cancelled
         ``progress`` returned False.
     """
-    cloud, origin = _cloud_of(terrain)
+    cloud, origin = cloud_to_thin(terrain)
     points, scale = terrain.mesh.vertices, terrain.frame.z_scale
     ids = vertex_ids[vertex_ids >= 0]
     limits = None if max_error is None else np.asarray(max_error) * scale
@@ -56,11 +97,17 @@ def thinned(
     is_all = origin.n_points == len(points)
     every = points if is_all else terrain.points_for_errors()
     errors = measured(mesh, every, scale, cover if is_all else None)
-    return cloud.subset(origin.vertex_rows()[ids]), errors
+    return Thinned(cloud.subset(origin.vertex_rows()[ids]), errors)
 
 
-def _cloud_of(terrain: Terrain) -> tuple[PointCloud, CloudOrigin]:
-    """Return the cloud of a terrain whose vertices are points of it."""
+def cloud_to_thin(terrain: Terrain) -> tuple[PointCloud, CloudOrigin]:
+    """Return the cloud of a terrain whose vertices are points of it.
+
+    Raises
+    ------
+    OptionError
+        The terrain is no point cloud, or its vertices are no points of one.
+    """
     cloud, origin = terrain.original, terrain.origin
     if terrain.segments is not None and isinstance(cloud, PointCloud):
         raise OptionError(

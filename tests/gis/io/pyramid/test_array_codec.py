@@ -187,14 +187,18 @@ def test_no_rows_need_no_choice():
     assert closest_header(empty) == header_of(empty)
 
 
-def test_the_filter_is_chosen_by_the_rows_in_the_middle(monkeypatch):
+def test_the_filter_is_chosen_by_rows_of_all_parts(monkeypatch):
     monkeypatch.setattr(array_codec, "_SAMPLE_ROWS", 1000)
-    noise = np.random.default_rng(0).integers(0, 2**62, 1000)
-    ramp = np.arange(1000) ** 2 * 10**6
-    assert closest_header(np.concatenate([noise, ramp, noise])).filter == "delta2_lzma"
+    noise = np.random.default_rng(0).integers(0, 2**62, 3000)
+    ramp = np.arange(12_000) ** 2 * 10**6
     assert closest_header(ramp).filter == "delta2_lzma"
-    assert closest_header(np.concatenate([ramp, noise, ramp])).filter != "delta2_lzma"
-    assert work_of(ramp) == ramp.nbytes * (1 + len(array_codec.FILTERS))
+    # at both ends and between: noise at the beginning is one stretch of four
+    assert closest_header(np.concatenate([noise, ramp])).filter == "delta2_lzma"
+    between = np.concatenate([noise[:500], ramp[:2500], noise, noise, noise])
+    assert closest_header(between).filter != "delta2_lzma"  # where no stretch is
+    assert len(array_codec._sample(ramp)) == 1000
+    assert array_codec._sample(ramp)[-1] == ramp[-1]
+    assert work_of(ramp) == ramp.nbytes + 1000 * ramp.itemsize * len(array_codec.FILTERS)
 
 
 def test_a_bomb_is_not_expanded(monkeypatch):
