@@ -8,7 +8,7 @@ PYTEST := $(BIN)/python -m pytest
 # its own, so that what a file's tests share is made by one of them.
 PARALLEL ?= --numprocesses auto --dist worksteal
 
-.PHONY: help demo test test-compiled test-plain test-fast test-exhaustive test-qgis test-qgis-numpy2 coverage lint check docs plugin release clean
+.PHONY: help demo test test-compiled test-plain test-fast test-exhaustive test-qgis test-qgis-numpy2 matrix coverage lint check docs plugin release clean
 
 help:
 	@echo "make demo       a real DEM to a wavelet pyramid, a table and a picture, in demo_output/"
@@ -19,6 +19,7 @@ help:
 	@echo "make test-exhaustive  every case of what make test has a sample of, also part of make check"
 	@echo "make test-qgis  the plugin's tests in QGIS, which is installed on Debian as root if it is missing"
 	@echo "make test-qgis-numpy2  the same in a second QGIS with Python 3.13 and numpy 2, in a chroot"
+	@echo "make matrix     those of test-compiled on the installed wheel: each Python on PATH, oldest and newest packages"
 	@echo "make coverage   which lines and branches those tests reach, but for QGIS's"
 	@echo "make lint       ruff, mypy and numpydoc"
 	@echo "make docs       the documentation as a site, in docs/_build/html"
@@ -73,6 +74,10 @@ test-qgis:
 
 test-qgis-numpy2:
 	@bash scripts/qgis-test.sh --chroot
+
+# Other Pythons, and other tests: make matrix PYTHONS="python3.12 /opt/python/bin/python3" TESTS="tests/gis -x"
+matrix:
+	@$(PYTHON) scripts/matrix.py $(PYTHONS) -- $(TESTS)
 
 # The plugin is checked against stubs of QGIS, so that this needs no QGIS.
 lint: $(BIN)/.installed-dev

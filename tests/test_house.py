@@ -22,6 +22,15 @@ def test_one_version():
     assert wavelet_core.__version__ == PROJECT["version"] == plugin_metadata()["version"]
 
 
+def test_each_python_of_the_classifiers_has_a_row_of_what_was_tried():
+    """A Python is claimed only where a run of `make matrix` is told of, and the other way round."""
+    page = (ROOT / "docs/start/install.md").read_text("utf-8")
+    tried = re.findall(r"^\| (3\.\d+)\.\d+ \| (oldest|newest) \|", page, re.MULTILINE)
+    claimed = [c.rpartition(" ")[2] for c in PROJECT["classifiers"] if ":: Python :: 3." in c]
+    assert claimed[0] == PROJECT["requires-python"].removeprefix(">=")
+    assert sorted(tried) == sorted((c, p) for c in claimed for p in ("oldest", "newest"))
+
+
 def test_one_licence():
     assert PROJECT["license"] == plugin_metadata()["license"] == "GPL-2.0-or-later"
     text = (ROOT / "LICENSE").read_text("utf-8")

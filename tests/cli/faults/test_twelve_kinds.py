@@ -9,6 +9,7 @@ import os
 import sqlite3
 import struct
 import xml.etree.ElementTree as ElementTree
+from contextlib import closing
 
 import laspy
 import numpy as np
@@ -232,7 +233,7 @@ def test_a_label_that_says_nothing_is_not_learned(tmp_path, done, seed):
     confusion = np.array(figures["validation"]["confusion"])
     share = np.trace(confusion) / confusion.sum()
     assert 0.4 < share < 0.6
-    with sqlite3.connect(tmp_path / "c.gpkg") as database:
+    with closing(sqlite3.connect(tmp_path / "c.gpkg")) as database, database:
         (table,) = database.execute("SELECT table_name FROM gpkg_contents").fetchone()
         found = {row[0] for row in database.execute(f'SELECT DISTINCT class FROM "{table}"')}
     assert found <= {2, 5}
@@ -289,7 +290,7 @@ def test_a_refusal_says_what_is_wrong(tmp_path, refused, name, content, told):
 
 def changed(pyramid, path, sql):
     path.write_bytes(pyramid.read_bytes())
-    with sqlite3.connect(path) as database:
+    with closing(sqlite3.connect(path)) as database, database:
         database.execute(sql)
     return path
 

@@ -105,9 +105,14 @@ def test_a_constant_attribute_has_no_detail_and_stays(prediction, update, signal
     pyramid = analyse(
         mesh, levels=6, partition="quadric", prediction=prediction, update=update, signal=signal
     )
-    for level in range(pyramid.n_levels):
-        largest = np.abs(pyramid.filters(level).prediction.data).max()
-        assert np.abs(pyramid.detail(level).vectors[:, -1]).max() <= 1e-13 * 7 * largest
+    # What rounding leaves in a detail reaches the coarser levels times the weights of the update,
+    # which are below one but in the unstable designs: there sums that nearly vanish divide them.
+    rounding = 1e-13 * 7
+    for level in reversed(range(pyramid.n_levels)):
+        filters = pyramid.filters(level)
+        largest = np.abs(filters.prediction.data).max()
+        assert np.abs(pyramid.detail(level).vectors[:, -1]).max() <= rounding * largest
+        rounding *= max(1.0, np.abs(filters.update.data).max(initial=0.0))
     np.testing.assert_allclose(pyramid.mesh(0).attributes[:, 3], 7.0, rtol=1e-9)
 
 

@@ -3,6 +3,7 @@
 import os
 import shutil
 import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pyogrio
@@ -71,7 +72,7 @@ def test_any_name_works_or_is_refused(place, folder, name):
             assert set(os.listdir(there)) == made
             same = (there / f"{name}.tif").read_bytes(), (there / f"{name} 2.tif").read_bytes()
             assert len(same[1]) > 0
-            with sqlite3.connect(f"{there}/{name}.gpkg") as connection:
+            with closing(sqlite3.connect(f"{there}/{name}.gpkg")) as connection, connection:
                 rows = connection.execute("SELECT COUNT(*) FROM coarse_tin").fetchone()
             connection.close()
             assert rows[0] > 0

@@ -101,8 +101,9 @@ def test_details_lie_at_the_removed_vertices(geo, geopackage):
 
 def test_every_layer_has_one_default_style(geopackage):
     import sqlite3
+    from contextlib import closing
 
-    with sqlite3.connect(geopackage) as connection:
+    with closing(sqlite3.connect(geopackage)) as connection, connection:
         styles = connection.execute(
             "SELECT f_table_name, f_geometry_column, useAsDefault, styleQML FROM layer_styles"
         ).fetchall()

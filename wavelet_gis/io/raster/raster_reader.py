@@ -86,7 +86,7 @@ def read_dem(
     """
     import rasterio
     from rasterio._err import CPLE_BaseError
-    from rasterio.errors import NotGeoreferencedWarning, RasterioError
+    from rasterio.errors import NotGeoreferencedWarning, RasterioError, RasterioIOError
 
     _require_file(path)
     remote = remote_reference(path)
@@ -113,7 +113,8 @@ def read_dem(
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             with rasterio.open(gdal_path(path)) as dataset:
                 dem, place = _read_band(dataset, path, band, nodata, window)
-    except (RasterioError, CPLE_BaseError, UnicodeDecodeError) as error:
+    # Before rasterio 1.4 the error of a file was none of its family.
+    except (RasterioError, RasterioIOError, CPLE_BaseError, UnicodeDecodeError) as error:
         if remote is not None:
             raise InputFileError(
                 f"{path}: {remote}, which this raster reads over the network, cannot be fetched; "

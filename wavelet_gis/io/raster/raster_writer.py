@@ -171,7 +171,7 @@ def _complaints_about(
 ) -> Iterator[None]:
     """Turn what GDAL and rasterio raise in the block into one error of ours."""
     from rasterio._err import CPLE_BaseError
-    from rasterio.errors import NotGeoreferencedWarning, RasterioError
+    from rasterio.errors import NotGeoreferencedWarning, RasterioError, RasterioIOError
 
     try:
         with warnings.catch_warnings(), silent_libraries():
@@ -179,8 +179,9 @@ def _complaints_about(
             warnings.simplefilter("ignore", NotGeoreferencedWarning)
             yield
     # GDAL's own errors reach us bare where rasterio only hands a call through.
-    # rasterio raises SystemError where GDAL fails without saying why.
-    except (RasterioError, CPLE_BaseError, ValueError, SystemError) as error:
+    # rasterio raises SystemError where GDAL fails without saying why. Before rasterio 1.4 the
+    # error of a file was none of its family.
+    except (RasterioError, RasterioIOError, CPLE_BaseError, ValueError, SystemError) as error:
         cause = error.__cause__ or error
         room = ""
         if not (isinstance(error, ValueError) or "support" in str(cause)):

@@ -44,8 +44,8 @@ def require_cgal() -> tuple[Any, Any]:
         from CGAL import CGAL_Kernel, CGAL_Mesh_2
     except ImportError as error:
         raise MissingDependencyError(
-            "a mesh for solvers is made by CGAL; install it with 'pip install cgal', or leave {0}, "
-            "{1}, {2} and {3} out.",
+            "a mesh for solvers is made by CGAL; install it with 'pip install cgal' (built for "
+            "Python 3.12 and earlier), or leave {0}, {1}, {2} and {3} out.",
             "min_angle",
             "longest_edge",
             "shortest_edge",

@@ -4,6 +4,7 @@ import os
 import shutil
 import sqlite3
 import time
+from contextlib import closing
 
 import pytest
 
@@ -27,7 +28,7 @@ def test_styles_are_added_to_those_there(tmp_path, validate_gpkg):
     create_geopackage(tmp_path / "a.gpkg")
     write_styles(tmp_path / "a.gpkg", [("one", "One", "<qgis/>", "first")])
     write_styles(tmp_path / "a.gpkg", [("two", "Two", "<qgis/>", "second")])
-    with sqlite3.connect(tmp_path / "a.gpkg") as connection:
+    with closing(sqlite3.connect(tmp_path / "a.gpkg")) as connection, connection:
         rows = connection.execute("SELECT f_table_name, styleName FROM layer_styles").fetchall()
     assert rows == [("one", "One"), ("two", "Two")]
     validate_gpkg(tmp_path / "a.gpkg")
@@ -126,9 +127,8 @@ def test_what_lies_beside_a_damaged_file_is_named(copy, cloud_pyramid):
     frames = copy.with_name("p.gpkg-wal").read_bytes()
     other.close()
     shutil.copy(cloud_pyramid, copy)
-    with sqlite3.connect(copy) as connection:
+    with closing(sqlite3.connect(copy)) as connection, connection:
         connection.execute("PRAGMA journal_mode = WAL")
-    connection.close()
     copy.with_name("p.gpkg-wal").write_bytes(frames)
     with pytest.raises(OSError, match=r"p\.gpkg-wal lies beside it"):
         read_pyramid(copy)
@@ -162,7 +162,7 @@ def test_layers_are_dated_alike_whatever_else_the_process_writes(
 
     add_layers(tmp_path / "a.gpkg", with_another_between(), raster_record.system)
     for name in ("a.gpkg", "b0.gpkg", "b1.gpkg"):
-        with sqlite3.connect(tmp_path / name) as connection:
+        with closing(sqlite3.connect(tmp_path / name)) as connection, connection:
             dates = set(connection.execute("SELECT last_change FROM gpkg_contents"))
         assert dates == {("2023-11-14T22:13:20.000Z",)}
     assert (tmp_path / "a.gpkg").read_bytes() == (tmp_path / "b1.gpkg").read_bytes()

@@ -10,6 +10,7 @@ import resource
 import shutil
 import sqlite3
 import zlib
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -418,7 +419,7 @@ NUMBERS = [
 @pytest.mark.parametrize("name", ["pyramid", "crs", "frame", "source", "format", "history"])
 def test_any_number_anywhere_in_the_metadata(damaged, sound, name, number):
     """Whatever stands where a value stood, all is read or one line tells of it."""
-    with sqlite3.connect(sound) as connection:
+    with closing(sqlite3.connect(sound)) as connection, connection:
         (text,) = connection.execute(
             "SELECT value FROM wavelet_metadata WHERE name = ?", (name,)
         ).fetchone()
@@ -479,7 +480,7 @@ def test_answers_of_another_number_or_type(damaged, name, array):
 @pytest.mark.parametrize("fill", [0x00, 0xFF, 0x55])
 def test_answers_that_tell_no_pyramid(damaged, sound, name, fill):
     """Whatever is answered, it ends; and what comes out is the input all the same, or nothing."""
-    with sqlite3.connect(sound) as connection:
+    with closing(sqlite3.connect(sound)) as connection, connection:
         (shape,) = connection.execute(
             "SELECT shape FROM wavelet_arrays WHERE name = ?", (f"parts/0/{name}",)
         ).fetchone()
@@ -503,7 +504,7 @@ def test_answers_that_tell_no_pyramid(damaged, sound, name, fill):
     ],
 )
 def test_records_that_are_none(damaged, sound, change):
-    with sqlite3.connect(sound) as connection:
+    with closing(sqlite3.connect(sound)) as connection, connection:
         (text,) = connection.execute(
             "SELECT value FROM wavelet_metadata WHERE name = 'record'"
         ).fetchone()

@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -47,7 +48,7 @@ def with_one_bit_changed(path, name):
 
 
 def test_one_bit_of_any_array(sound, tmp_path):
-    with sqlite3.connect(sound) as connection:
+    with closing(sqlite3.connect(sound)) as connection, connection:
         names = list(read_entries(connection, with_checksums=True))
     changed = 0
     for name in names:
@@ -71,7 +72,7 @@ def numbers_of(value, place=()):
 
 
 def test_one_number_of_any_metadata(sound, tmp_path):
-    with sqlite3.connect(sound) as connection:
+    with closing(sqlite3.connect(sound)) as connection, connection:
         texts = dict(connection.execute("SELECT name, value FROM wavelet_metadata"))
     changed = set()
     for name, text in texts.items():

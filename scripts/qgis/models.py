@@ -1,6 +1,6 @@
 """Write the models of processing_models/ anew, with the QGIS of this Python.
 
-Run it when a model changes: QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis-models.py
+Run it when a model changes: QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis/models.py
 The models are small enough to be told here, step by step, which also reads better than their XML.
 """
 
@@ -24,7 +24,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QPointF
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "processing_models"
 GROUP = "Models"
 
