@@ -1,9 +1,11 @@
 """Write the models of processing_models/ anew, with the QGIS of this Python.
 
-Run it when a model changes: QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis/models.py
+Run it when a model changes, or the help or formats of an algorithm that one uses:
+QT_QPA_PLATFORM=offscreen .venv-qgis/bin/python scripts/qgis/models.py [FOLDER]
 The models are small enough to be told here, step by step, which also reads better than their XML.
 """
 
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -25,7 +27,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QPointF
 
 ROOT = Path(__file__).resolve().parents[2]
-FOLDER = ROOT / "processing_models"
+FOLDER = Path(sys.argv[1]) if sys.argv[1:] else ROOT / "processing_models"
 GROUP = "Models"
 
 INTEGER = QgsProcessingParameterNumber.Type.Integer
@@ -92,7 +94,14 @@ class Model:
         self.model.updateDestinationParameters()
         path = FOLDER / file_name
         assert self.model.toFile(str(path)), path
-        print(path.relative_to(ROOT))
+        # QGIS writes a tag's attributes in another order each time.
+        text = re.sub(r'(?: \w+="[^"]*")+', _in_order, path.read_text("utf-8"))
+        path.write_text(text, "utf-8")
+        print(path)
+
+
+def _in_order(attributes):
+    return "".join(sorted(re.findall(r' \w+="[^"]*"', attributes[0])))
 
 
 def input_(name):
