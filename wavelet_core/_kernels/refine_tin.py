@@ -165,6 +165,23 @@ def copy_lists(start, stop, points, first, pool):
             pool[first[face] + k] = points.pool[points.first[face] + k]
 
 
+# Write the lists of n_faces faces anew, side by side in the pool from `opening` on: of near (n,)
+# int32 each point goes to faces[side], side (n,) int32. cursor (>= n_faces,) int64: room to count
+@inlined
+def hand_over(near, side, n, faces, n_faces, opening, cursor, points):
+    for k in range(n_faces):
+        cursor[k] = 0
+    for q in range(n):
+        cursor[side[q]] += 1
+    for k in range(n_faces):
+        points.first[faces[k]], points.n_points[faces[k]] = opening, cursor[k]
+        opening += cursor[k]
+        cursor[k] = points.first[faces[k]]
+    for q in range(n):
+        points.pool[cursor[side[q]]] = near[q]
+        cursor[side[q]] += 1
+
+
 # Is the face of these corners wide enough, and counter-clockwise?
 @inlined
 def is_wide(ax, ay, bx, by, cx, cy):
