@@ -246,9 +246,12 @@ def propose_insertions(start, stop, faces, tin, points, objective, point, on_edg
                             weight = min(weight, at[k] * share[k])
                     weight = max(weight, 0.0)
                     squares += weight * weight
+                    if objective.is_free:
+                        for i in range(n_channels):
+                            pull[i] += weight * off[i]
+                        continue
                     before_it, after_it = 0.0, 0.0
                     for i in range(n_channels):
-                        pull[i] += weight * off[i]
                         before_it += off[i] * off[i]
                         changed = off[i] - weight * (surface[i] - points.z[q, i])
                         after_it += changed * changed
