@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from qgis.core import (
-    QgsProcessingFeatureSource,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterField,
     QgsProcessingParameterNumber,
     QgsProcessingParameterRasterLayer,
 )
 
-from ..parameters.tolerance import ByPlace, values_at
+from ..parameters.tolerance import ByPlace, LayersByPlace, take_layers_by_place, values_at
 from ..ui.dependencies import CGAL, SHAPELY
 from ..ui.enums import NUMERIC_FIELD, POLYGONS, REAL_NUMBER
 from ..ui.translation import tr
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from ..base import TerrainWaveletsAlgorithm
     from ..parameters.request import Request
     from ..qgis_io.background import Work
-    from ..qgis_io.raster_reader import RasterInput
     from ..ui.dependencies import Package
 
 #: Degrees, where another bound is given.
@@ -39,13 +37,6 @@ RULES = {
     "MAX_AREA": "max_area",
     "GRADING": "grading",
 }
-
-
-class SizeInput(NamedTuple):
-    """What must be taken from the layers of sizes in their own thread."""
-
-    zones: QgsProcessingFeatureSource | None
-    raster: RasterInput | None
 
 
 def add_solver_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
@@ -128,15 +119,9 @@ def _add_size_layers(algorithm: TerrainWaveletsAlgorithm) -> None:
     )
 
 
-def take_sizes(request: Request) -> SizeInput:
+def take_sizes(request: Request) -> LayersByPlace:
     """Take from the layers, in their own thread, what reading them needs."""
-    from ..qgis_io.raster_reader import RasterInput
-
-    layer = request.algorithm.parameterAsRasterLayer(
-        request.parameters, "SIZE_RASTER", request.context
-    )
-    raster = None if layer is None else RasterInput.from_layer(layer, 1)
-    return SizeInput(request.source("SIZE_ZONES"), raster)
+    return take_layers_by_place(request, "SIZE_ZONES", "SIZE_RASTER")
 
 
 def _is_asked_for(request: Request) -> bool:
@@ -176,7 +161,7 @@ def solver_refusal(request: Request) -> str | None:
     return None
 
 
-def for_solver(request: Request, simplified: Simplified, given: SizeInput) -> Simplified:
+def for_solver(request: Request, simplified: Simplified, given: LayersByPlace) -> Simplified:
     """Return the TIN with the nodes that the bounds take; itself where none is given."""
     if not _is_asked_for(request):
         return simplified
@@ -210,7 +195,7 @@ def for_solver(request: Request, simplified: Simplified, given: SizeInput) -> Si
 
 
 def _sizes_by_place(
-    request: Request, simplified: Simplified, given: SizeInput
+    request: Request, simplified: Simplified, given: LayersByPlace
 ) -> dict[str, NDArray[np.float64]]:
     """Return the sizes that layers give, by keyword, for the vertices of the terrain."""
     terrain, found = simplified.terrain, {}

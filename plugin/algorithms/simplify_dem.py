@@ -25,7 +25,7 @@ from ..parameters.surface_output import (
     write_surface,
 )
 from ..parameters.tolerance import (
-    ToleranceInput,
+    LayersByPlace,
     add_tolerance_parameters,
     is_by_place,
     limits_of,
@@ -38,7 +38,6 @@ from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._dem_input import DemInput
 from ._solver_input import (
-    SizeInput,
     add_solver_parameters,
     for_solver,
     solver_packages,
@@ -66,8 +65,8 @@ class SimplifyDem(DemInput):
 
     GROUP = "analysis"
     PAGE = "surface"
-    tolerance: ToleranceInput
-    sizes: SizeInput
+    tolerance: LayersByPlace
+    sizes: LayersByPlace
     #: Whether the TIN is what a first click gives.
     IS_TIN_BY_DEFAULT: ClassVar[bool] = True
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 CHUNK = 10_000
 
 
-class ToleranceInput(NamedTuple):
+class LayersByPlace(NamedTuple):
     """What must be taken from the layers in their own thread."""
 
     zones: QgsProcessingFeatureSource | None
@@ -89,20 +89,23 @@ def tolerance_refusal(request: Request) -> str | None:
     return None
 
 
-def take_tolerance(request: Request) -> ToleranceInput:
+def take_tolerance(request: Request) -> LayersByPlace:
     """Take from the layers, in their own thread, what reading them needs."""
+    return take_layers_by_place(request, "ZONES", "TOLERANCE")
+
+
+def take_layers_by_place(request: Request, zones: str, raster: str) -> LayersByPlace:
+    """Take what two parameters name, in the thread of their layers."""
     from ..qgis_io.raster_reader import RasterInput
 
-    layer = request.algorithm.parameterAsRasterLayer(
-        request.parameters, "TOLERANCE", request.context
-    )
-    raster = None if layer is None else RasterInput.from_layer(layer, 1)
-    return ToleranceInput(request.source("ZONES"), raster)
+    layer = request.algorithm.parameterAsRasterLayer(request.parameters, raster, request.context)
+    of_layer = None if layer is None else RasterInput.from_layer(layer, 1)
+    return LayersByPlace(request.source(zones), of_layer)
 
 
 def limits_of(
     request: Request,
-    given: ToleranceInput,
+    given: LayersByPlace,
     place: Place,
     mesh: TriangleMesh,
 ) -> NDArray[np.float64]:
