@@ -60,9 +60,9 @@ class _Effort(NamedTuple):
 #: the share and twice as much change the RMSE by 0.4 % at most.
 ORDINARY = _Effort(8, 0.005, 3, 0.1)
 #: Of a coarse TIN at a given size, for which the analysis took longer and a round takes less: at
-#: 2 % it lowers the RMSE by another 0.7 to 1.2 % on parts of two DEMs and on three clouds, and the
+#: 2 % it lowers the RMSE by another 0.7 to 1.4 % on parts of two DEMs and on three clouds, and the
 #: refinement takes about twice as long.
-THOROUGH = _Effort(16, 0.001, 8, 0.3)
+THOROUGH = _Effort(10, 0.001, 8, 0.3)
 #: A TIN is coarse with at most this part of the input's points.
 COARSE = 0.05
 
@@ -130,7 +130,7 @@ def refine(
     rounds : int, optional
         How many; by default until one of them lowers the error by less than half a per cent, and
         at most 8; of a TIN with at most a twentieth of the input's points, until one lowers it by
-        less than a thousandth, and at most 16.
+        less than a thousandth, and at most 10.
     keep_points : bool
         With ``"rms"``, too, each vertex is an input vertex, height and all.
     max_error : float or array_like, shape (n_original,), optional
