@@ -13,7 +13,7 @@ root=${QGIS_CHROOT:-${XDG_CACHE_HOME:-$HOME/.cache}/terrain-wavelets/qgis-trixie
 suite=trixie
 packages=(qgis python3-qgis qgis-providers python3-scipy python3-numba python3-pytest python3-hypothesis
           python3-laspy python3-sklearn python3-pip python3-venv proj-data make git)
-from_pip=(PythonCDT lazrs 'trimesh>=4.4' 'ezdxf>=1.1')
+from_pip=(PythonCDT lazrs 'trimesh>=4.4' 'ezdxf>=1.1' 'python-serafin>=0.2')
 
 say() { printf 'qgis-chroot: %s\n' "$*" >&2; }
 

@@ -16,5 +16,5 @@ printf 'qgis-venv: %s over %s, numpy %s\n' "$venv" "$("$python" --version)" "$nu
 "$python" -m venv --system-site-packages "$venv"
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check \
     "numpy==$numpy" 'pytest>=8' 'pytest-xdist>=3.5' hypothesis 'laspy>=2.4' lazrs 'PythonCDT>=2.0' 'scikit-learn>=1.3' \
-    'trimesh>=4.4' 'ezdxf>=1.1'
+    'trimesh>=4.4' 'ezdxf>=1.1' 'python-serafin>=0.2'
 touch "$stamp"

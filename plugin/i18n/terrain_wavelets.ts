@@ -3145,6 +3145,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
+    <source>meshes as SELAFIN, for TELEMAC</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
     <source>meshes for solvers: bounds of angles and edges</source>
     <translation type="unfinished"></translation>
   </message>
@@ -3421,6 +3426,11 @@
   <message>
     <location filename="../../MESH_FORMATS"/>
     <source>QGIS (as a mesh layer), hydraulic models</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>TELEMAC, QGIS (as a mesh layer)</source>
     <translation type="unfinished"></translation>
   </message>
 </context>

@@ -3145,6 +3145,11 @@
   </message>
   <message>
     <location filename="../../plugin/ui/dependencies.py"/>
+    <source>meshes as SELAFIN, for TELEMAC</source>
+    <translation>Netze als SELAFIN, für TELEMAC</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/ui/dependencies.py"/>
     <source>meshes for solvers: bounds of angles and edges</source>
     <translation>Netze für Löser: Schranken für Winkel und Kanten</translation>
   </message>
@@ -3422,6 +3427,11 @@
     <location filename="../../MESH_FORMATS"/>
     <source>QGIS (as a mesh layer), hydraulic models</source>
     <translation>QGIS (als Netzlayer), hydraulische Modelle</translation>
+  </message>
+  <message>
+    <location filename="../../MESH_FORMATS"/>
+    <source>TELEMAC, QGIS (as a mesh layer)</source>
+    <translation>TELEMAC, QGIS (als Netzlayer)</translation>
   </message>
 </context>
 </TS>

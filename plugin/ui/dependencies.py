@@ -44,6 +44,7 @@ PYPROJ = Package("pyproj", "pyproj", "python3-pyproj")
 SCIKIT_LEARN = Package("sklearn", "scikit-learn", "python3-sklearn")
 TRIMESH = Package("trimesh", "trimesh")
 EZDXF = Package("ezdxf", "ezdxf")
+SERAFIN = Package("serafin", "python-serafin")
 CGAL = Package("CGAL", "cgal")
 SHAPELY = Package("shapely", "shapely", "python3-shapely")
 
@@ -63,13 +64,14 @@ def optional_packages() -> list[tuple[Package, str]]:
         (SCIKIT_LEARN, tr("classes learned in Cluster details")),
         (TRIMESH, tr("meshes as GLB")),
         (EZDXF, tr("meshes as DXF")),
+        (SERAFIN, tr("meshes as SELAFIN, for TELEMAC")),
         (CGAL, tr("meshes for solvers: bounds of angles and edges")),
     ]
 
 
 def named(pip: str) -> Package:
     """Return the package that pip knows by a name."""
-    return next((p for p in (TRIMESH, EZDXF) if p.pip == pip), Package(pip, pip))
+    return next((p for p in (TRIMESH, EZDXF, SERAFIN) if p.pip == pip), Package(pip, pip))
 
 
 def for_las(path: str) -> tuple[Package, ...]:

@@ -12,6 +12,8 @@ import pytest
 import wavelet_core
 from wavelet_core import OptionError, SlowFallbackWarning
 from wavelet_core._kernels import _jit
+from wavelet_core.errors import Cancelled
+from wavelet_core.progress import watched
 
 PACKAGE = Path(wavelet_core.__file__).parent
 
@@ -121,3 +123,26 @@ def test_the_number_of_threads_is_that_of_the_environment_or_of_the_cores(wish, 
 def counting(start, stop, covered):
     for k in range(start, stop):
         covered[k] += 1
+
+
+@pytest.mark.skipif(not _jit.HAS_NUMBA, reason="is about compiled kernels")
+@pytest.mark.parametrize("threads", ["1", "2"])
+def test_a_compiled_step_reports_while_it_runs_and_stops_when_it_is_told(monkeypatch, threads):
+    """The button was not looked at for 5.6 s while the faces of two million points were written."""
+    monkeypatch.setenv("TERRAIN_WAVELETS_THREADS", threads)
+    n = 1 << 20
+    covered = np.zeros(n, dtype=np.int64)
+    shares = []
+    with _jit.engine("compiled"), watched(shares.append):
+        _jit.run_in_ranges(counting, n, covered)
+    assert (covered == 1).all()
+    assert len(shares) >= 8
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0
+
+    def stop(share):
+        if share > 0.2:
+            raise Cancelled("told to")
+
+    with _jit.engine("compiled"), watched(stop), pytest.raises(Cancelled, match="told to"):
+        _jit.run_in_ranges(counting, n, covered)

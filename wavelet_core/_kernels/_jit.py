@@ -30,6 +30,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import OptionError, SlowFallbackWarning
+from ..progress import report_share
 
 #: Set to any non-empty value to run without numba even where it is installed.
 DISABLE_VARIABLE = "TERRAIN_WAVELETS_NO_NUMBA"
@@ -43,6 +44,8 @@ ENGINES = ("compiled", "arrays", "loops")
 MAX_LOOPS = 50_000
 #: Inputs with more vertices than this make the program mention that numba would be faster.
 ANNOUNCED_FROM = 100_000
+#: Items of a compiled step after which it reports how far it is.
+_ITEMS_BETWEEN_REPORTS = 1 << 17
 #: Inputs of up to so many vertices are done on whole arrays before numba, which takes some 25 s to
 #: compile the kernels the first time ever, would have begun.
 SMALL_INPUT = 10_000
@@ -238,16 +241,26 @@ def run_in_ranges(step: Kernel, n_items: int, *arguments: Any, called: str = "")
             "input."
         )
     threads = n_threads()
-    if name != "compiled" or threads == 1 or n_items < 4096:
+    if name != "compiled" or n_items < 4096:
         step(0, n_items, *arguments)
         return
     run = step.compiled
-    n_ranges = 4 * threads
+    n_ranges = max(4 * threads, n_items // _ITEMS_BETWEEN_REPORTS)
     bounds = [n_items * k // n_ranges for k in range(n_ranges + 1)]
     run(0, 0, *arguments)  # compiled once, before the threads race for it
+    if threads == 1:
+        for k, (start, stop) in enumerate(itertools.pairwise(bounds)):
+            run(start, stop, *arguments)
+            report_share((k + 1) / n_ranges)
+        return
     with ThreadPoolExecutor(threads) as pool:
         jobs = [
             pool.submit(run, start, stop, *arguments) for start, stop in itertools.pairwise(bounds)
         ]
-        for job in jobs:
-            job.result()
+        try:
+            for k, job in enumerate(jobs):
+                job.result()
+                report_share((k + 1) / n_ranges)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise

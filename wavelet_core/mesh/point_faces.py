@@ -136,15 +136,19 @@ def triangles_of(
     heads = np.empty(n_spokes, dtype=np.int32)
     edge_of = np.empty(n_spokes, dtype=np.int32)
     place = np.empty(n_spokes, dtype=np.int32)
+    report(progress, 0.0, _CANCELLED)
     gather_spokes(edges.rows(), indptr, heads, edge_of)
+    report(progress, 0.1, _CANCELLED)
     with watched_part(progress, 0.1, 0.5, _CANCELLED):
         run_in_ranges(turn_spokes, n, x, y, indptr, heads, edge_of, place)
     report(progress, 0.5, _CANCELLED)
     n_triangles = np.empty(n, dtype=np.int32)
     spokes = (x, y, indptr, heads, edge_of, place)
-    run_in_ranges(count_triangles, n, *spokes, n_triangles)
+    with watched_part(progress, 0.5, 0.75, _CANCELLED):
+        run_in_ranges(count_triangles, n, *spokes, n_triangles)
     report(progress, 0.75, _CANCELLED)
     first = np.concatenate([[0], np.cumsum(n_triangles, dtype=np.int64)])
     triangles = np.empty((int(first[-1]), 3), dtype=np.int32)
-    run_in_ranges(fill_triangles, n, *spokes, first, triangles)
+    with watched_part(progress, 0.75, 1.0, _CANCELLED):
+        run_in_ranges(fill_triangles, n, *spokes, first, triangles)
     return triangles

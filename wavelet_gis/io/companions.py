@@ -24,7 +24,7 @@ _OF_RASTERS = (".ovr", ".msk", ".msk.ovr", ".aux.xml")
 
 #: Suffixes of outputs that GDAL's companions do not belong to.
 _NO_RASTERS = (
-    *(".gpkg", ".ply", ".obj", ".2dm", ".stl", ".glb", ".xml", ".dxf"),
+    *(".gpkg", ".ply", ".obj", ".2dm", ".slf", ".stl", ".glb", ".xml", ".dxf"),
     *(".las", ".laz", ".html", ".htm", ".json", ".pdf", ".svg"),
 )
 
@@ -32,7 +32,19 @@ _NO_RASTERS = (
 _HEADERS = dict.fromkeys((".bil", ".bip", ".bsq", ".flt"), ".hdr")
 
 #: Files of these kinds own a ``.prj`` of their stem.
-_OWNERS_OF_PRJ = (".shp", ".dbf", ".shx", ".asc", ".bil", ".bip", ".bsq", ".flt", ".grd", ".2dm")
+_OWNERS_OF_PRJ = (
+    ".shp",
+    ".dbf",
+    ".shx",
+    ".asc",
+    ".bil",
+    ".bip",
+    ".bsq",
+    ".flt",
+    ".grd",
+    ".2dm",
+    ".slf",
+)
 
 #: What other programs put beside a raster or a cloud under its stem.
 _FOREIGN = {

@@ -98,6 +98,16 @@ MESH_FORMATS = (
         takes_crs=True,
     ),
     MeshFormat(
+        ".slf",
+        "SELAFIN",
+        "wavelet_gis.io.mesh.selafin:write_selafin",
+        "TELEMAC, QGIS (as a mesh layer)",
+        package="python-serafin",
+        keeps_attributes=True,
+        takes_crs=True,
+        has_prj=True,
+    ),
+    MeshFormat(
         ".stl", "STL", "wavelet_gis.io.mesh.cad:write_stl", "3D printers", has_local_origin=True
     ),
     MeshFormat(

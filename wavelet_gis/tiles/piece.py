@@ -33,6 +33,7 @@ from wavelet_gis.model.mesh_origin import MeshOrigin
 from wavelet_gis.model.raster_origin import RasterOrigin
 from wavelet_gis.model.terrain import Terrain
 from wavelet_gis.notes import collected
+from wavelet_gis.tiles.kept_levels import keep_levels, kept_levels
 from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
 from wavelet_gis.workflows.analyse import analyse
 from wavelet_gis.workflows.save import write_pyramid_file
@@ -166,6 +167,8 @@ def make_piece(
                     write_pyramid_file(scratch, geo, "none")
                 record |= {"status": "whole", **_figures(geo), "sha256": sha256_of(place)}
                 record["n_bytes"] = place.stat().st_size
+                if piece.stage + 1 < plan.n_stages:
+                    keep_levels(folder, piece.name, record["sha256"], geo.pyramid)
     except Cancelled:
         raise
     except (WaveletError, OSError) as error:  # a full disk, of whatever kind
@@ -352,9 +355,12 @@ def _group(
     for name, text in inputs.items():
         path = Path(folder) / PIECES / f"{name}.gpkg"
         level = level_handed_on(text)
-        if handed_on(sha256_of(path), level) != text:
+        checksum = sha256_of(path)
+        if handed_on(checksum, level) != text:
             raise InputFileError(f"{path}: this is not the file that was made; tile anew.")
-        pyramid = read_levels(path, level).pyramid
+        pyramid = kept_levels(folder, name, checksum, level)
+        if pyramid is None:
+            pyramid = read_levels(path, level).pyramid
         meshes.append(pyramid.mesh(level))
         integrals.append(pyramid.integrals(level))
     if not meshes:
@@ -406,7 +412,9 @@ def _points_of(
             continue
         mesh = read_input(Path(folder) / PIECES / f"{tile.name}.gpkg").pyramid.mesh(0)
         of_tile = cells_of(plan, mesh)
-        is_taken = (_scattered(of_tile) < share) | np.isin(of_tile, vertices)
+        is_taken = _scattered(of_tile) < share
+        if share < 1.0:
+            is_taken |= np.isin(of_tile, vertices)
         cells.append(of_tile[is_taken])
         found.append(np.hstack([mesh.vertices[:, 2:], mesh.attributes])[is_taken])
     unique, first = np.unique(np.concatenate(cells), return_index=True)  # two tiles have a border

@@ -20,6 +20,7 @@ from itertools import islice
 from multiprocessing import get_context, parent_process
 from typing import Any
 
+from wavelet_core._kernels._jit import THREADS_VARIABLE
 from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.errors import OutputFileError
 
@@ -85,8 +86,12 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
     n_losses = 0
     while left:
         n_before = len(left)
+        n_processes = min(workers, len(left))
         pool = ProcessPoolExecutor(
-            min(workers, len(left)), mp_context=get_context("spawn"), initializer=_as_a_worker
+            n_processes,
+            mp_context=get_context("spawn"),
+            initializer=_as_a_worker,
+            initargs=(max((os.cpu_count() or 1) // n_processes, 1),),
         )
         try:
             waiting = iter(list(left))
@@ -112,8 +117,12 @@ def _in_processes(jobs: Sequence[Job], workers: int) -> Iterator[dict[str, Any]]
             pool.shutdown(cancel_futures=True)
 
 
-def _as_a_worker() -> None:
-    """Leave Ctrl-C to the program, which lets the pieces in flight be finished; end with it."""
+def _as_a_worker(n_threads: int) -> None:
+    """Take a share of the cores; leave Ctrl-C to the program, which lets pieces in flight be done.
+
+    Threads of several processes on the same cores wait for one another.
+    """
+    os.environ.setdefault(THREADS_VARIABLE, str(n_threads))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_the_program, daemon=True).start()
 

@@ -19,6 +19,7 @@ from wavelet_gis.tiles.cloud.cut import CUT, SOURCES, stamp_of
 from wavelet_gis.tiles.cloud.plan import plan_of_clouds
 from wavelet_gis.tiles.handover import handover_levels
 from wavelet_gis.tiles.index import INDEX, TileIndex, open_index, write_index
+from wavelet_gis.tiles.kept_levels import KEPT, drop_levels
 from wavelet_gis.tiles.piece import (
     LOOSE,
     PIECES,
@@ -244,6 +245,8 @@ def run_plan(
             n_made += 1
             if on_piece is not None:
                 on_piece(record, n_made + n_found, n_total)
+        if stage > 0:
+            drop_levels(place, stage - 1)
     index = open_index(place)
     write(index)
     if plan.points is not None and all(row["status"] != "failed" for row in index.records.values()):
@@ -297,11 +300,11 @@ def _prepared(folder: Path, plan: TilePlan, overwrite: bool) -> Path:
                 "overwrite",
                 path=folder,
             )
-        for name in (PIECES, CUT, SOURCES):
+        for name in (PIECES, KEPT, CUT, SOURCES):
             shutil.rmtree(folder / name, ignore_errors=True)
         (folder / INDEX).unlink(missing_ok=True)
     ensure_folder(folder)
-    stages = [f"{PIECES}/{stage}" for stage in range(plan.n_stages)]
+    stages = [f"{name}/{stage}" for name in (PIECES, KEPT) for stage in range(plan.n_stages)]
     for name in (CUT, SOURCES, *stages):  # what a killed run had begun
         sweep_own(folder / name)
     if not is_there or (folder / PLAN).read_text("utf-8", errors="replace") != text:

@@ -108,7 +108,7 @@ def files_limited_to(n_bytes):
 def test_a_file_that_does_not_fit(job, sources, tmp_path, capfd, record_property):
     command, source, name, *options = job
     pictures = dict.fromkeys(("png", "svg", "pdf"), "matplotlib")
-    package = {"glb": "trimesh", "dxf": "ezdxf", **pictures}.get(name[-3:])
+    package = {"glb": "trimesh", "dxf": "ezdxf", "slf": "serafin", **pictures}.get(name[-3:])
     if package:
         pytest.importorskip(package)
     output = tmp_path / name

@@ -64,10 +64,11 @@ class TestSimplify:
             (".glb", b"glTF"),
             (".xml", b"<?xml"),
             (".dxf", b"  0"),
+            (".slf", b"\0\0\0\x50terrain-wavelets"),
         ],
     )
     def test_every_mesh_format(self, run, dem, tmp_path, suffix, start):
-        library = {".glb": "trimesh", ".dxf": "ezdxf"}.get(suffix)
+        library = {".glb": "trimesh", ".dxf": "ezdxf", ".slf": "serafin"}.get(suffix)
         if library:
             pytest.importorskip(library)
         path = tmp_path / f"m{suffix}"
@@ -192,6 +193,32 @@ def test_a_ugrid_mesh_opens_as_a_mesh_layer_with_its_crs(run, tmp_path):
     heights = layer.datasetGroupMetadata(QgsMeshDatasetIndex(0))
     values = numbers(dem)
     assert values.min() - 5 < heights.minimum() < heights.maximum() < values.max() + 5
+
+
+def test_a_selafin_mesh_opens_as_a_mesh_layer_with_its_bed(run, tmp_path):
+    from qgis.core import QgsMesh, QgsMeshDatasetIndex, QgsMeshLayer
+
+    pytest.importorskip("serafin")
+    dem = write_raster(tmp_path / "dem.tif", hills(40, 50).astype("float32"))
+    parameters = {"INPUT": dem, "VERTICES": 300, "FIT": False}
+    made, as_text = (
+        run("simplifydem", {**parameters, "MESH": str(tmp_path / f"a{suffix}")})
+        for suffix in (".slf", ".2dm")
+    )
+    layer, text_layer = (QgsMeshLayer(one["MESH"], "mesh", "mdal") for one in (made, as_text))
+    assert layer.isValid()
+    read, other = QgsMesh(), QgsMesh()
+    layer.dataProvider().populateMesh(read)
+    text_layer.dataProvider().populateMesh(other)
+    assert read.vertexCount() == other.vertexCount() == 300
+    assert [list(read.face(k)) for k in range(read.faceCount())] == [
+        list(other.face(k)) for k in range(other.faceCount())
+    ]
+    bed = layer.dataProvider().datasetValues(QgsMeshDatasetIndex(0, 0), 0, 300)
+    for k in range(300):
+        here, there = read.vertex(k), other.vertex(k)
+        assert (here.x(), here.y()) == (there.x(), there.y())
+        assert bed.value(k).scalar() == pytest.approx(there.z(), rel=1e-14)
 
 
 class TestSolverMesh:

@@ -138,13 +138,20 @@ def test_without_pythoncdt_breaklines_are_edges_all_the_same(qgis_process, tmp_p
         assert made[0][figure] == pytest.approx(made[1][figure]), figure
 
 
-@pytest.mark.parametrize(("hidden", "suffix"), [("trimesh", ".glb"), ("ezdxf", ".dxf")])
-def test_a_mesh_format_without_its_library(qgis_process, tmp_path, hidden, suffix):
+@pytest.mark.parametrize(
+    ("hidden", "package", "suffix"),
+    [
+        ("trimesh", "trimesh", ".glb"),
+        ("ezdxf", "ezdxf", ".dxf"),
+        ("serafin", "python-serafin", ".slf"),
+    ],
+)
+def test_a_mesh_format_without_its_library(qgis_process, tmp_path, hidden, package, suffix):
     dem = write_raster(tmp_path / "dem.tif", hills(20, 20).astype("float32"))
     mesh = tmp_path / f"mesh{suffix}"
     parameters = {"INPUT": dem, "VERTICES": 50, "MESH": str(mesh)}
     text = qgis_process("simplifydem", parameters, [hidden], fails=True)
-    assert f"missing Python package: {hidden}" in text
+    assert f"missing Python package: {package}" in text
     assert "install" in text
     assert not mesh.exists()
 

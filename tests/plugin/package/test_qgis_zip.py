@@ -13,7 +13,17 @@ from qgis_layers import assert_same_raster, hills, survey, write_las, write_rast
 
 ROOT = Path(__file__).resolve().parents[3]
 #: Packages that a QGIS as it comes does not have.
-HIDDEN = ("numba", "pythoncdt", "laspy", "lazrs", "sklearn", "trimesh", "ezdxf", "shapely")
+HIDDEN = (
+    "numba",
+    "pythoncdt",
+    "laspy",
+    "lazrs",
+    "sklearn",
+    "trimesh",
+    "ezdxf",
+    "serafin",
+    "shapely",
+)
 TOP = "terrain_wavelets/"
 #: Suffixes of what the plugin repository takes as source.
 ALLOWED = {".html", ".py", ".svg", ".model3", ".ts", ".qm", ".md", ".txt", ".typed", ""}

@@ -15,7 +15,7 @@ from wavelet_core import MissingDependencyError, TriangleMesh
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.read_back import recorded_stream, write_text
 
-__all__ = ["write_dxf", "write_glb", "write_landxml", "write_stl"]
+__all__ = ["metres_in_horizontal_unit", "write_dxf", "write_glb", "write_landxml", "write_stl"]
 
 #: glTF's vertical axis is y: x stays, y becomes -z, z becomes y.
 _Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
@@ -100,7 +100,7 @@ def write_landxml(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | N
 
 
 def _landxml_unit(wkt: str, path: str | os.PathLike[str]) -> str:
-    metres = _metres_in_horizontal_unit(wkt)
+    metres = metres_in_horizontal_unit(wkt)
     for unit, length in (("meter", 1.0), ("kilometer", 1000.0)):
         if abs(metres / length - 1) < 1e-9:
             return (
@@ -120,7 +120,7 @@ def _landxml_unit(wkt: str, path: str | os.PathLike[str]) -> str:
     )
 
 
-def _metres_in_horizontal_unit(wkt: str) -> float:
+def metres_in_horizontal_unit(wkt: str) -> float:
     """Return the length in which a definition counts x and y; 1 where it gives none.
 
     Of a compound CRS it is the projected part that counts.

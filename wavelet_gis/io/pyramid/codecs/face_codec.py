@@ -128,9 +128,12 @@ def _answers_by(
 ) -> tuple[tuple[NDArray[np.uint8], ...], NDArray[np.int32]]:
     """Return the answers to all questions, and the edges that nobody asks about."""
     pairs = near_pairs(x, y, N_NEAREST, part_of(progress, 0.0, 0.9))
-    joined, is_asked = edges.are_joined(pairs, part_of(progress, 0.9, 1.0))
-    answers = tuple(joined[pairs.classes == of_class] for of_class in range(N_EDGE_CLASSES))
-    return answers, edges.rows()[~is_asked]
+    joined, is_asked = edges.are_joined(pairs, part_of(progress, 0.9, 0.95))
+    answers = []
+    for of_class in range(N_EDGE_CLASSES):
+        report(progress, 0.95 + 0.05 * of_class / N_EDGE_CLASSES, _CANCELLED)
+        answers.append(joined[pairs.classes == of_class])
+    return tuple(answers), edges.rows()[~is_asked]
 
 
 def _edges_from(
@@ -144,6 +147,7 @@ def _edges_from(
     pairs = near_pairs(x, y, N_NEAREST, part_of(progress, 0.0, 0.9))
     joined = np.zeros(pairs.classes.shape, dtype=bool)
     for of_class, answers in enumerate(record.answers):
+        report(progress, 0.9 + 0.1 * of_class / N_EDGE_CLASSES, _CANCELLED)
         asked = pairs.classes == of_class
         n_asked = int(np.count_nonzero(asked))
         _require(len(answers) >= n_asked, "questions without an answer")
