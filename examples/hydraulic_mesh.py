@@ -1,4 +1,4 @@
-"""Make a mesh for a hydraulic model of a real DEM: a dike, a building, zones, angles; draw it.
+"""Make a mesh for a hydraulic model of a real DEM: a dike, a building, zones, sizes; draw it.
 
 usage: python examples/hydraulic_mesh.py DEM.tif MESH.nc PICTURE.png
 
@@ -25,15 +25,15 @@ from matplotlib import pyplot
 from matplotlib.collections import LineCollection
 
 MIN_ANGLE = 25.0
+#: Metres: edges at the building, and anywhere; and how fast they may grow in between.
+AT_BUILDING, ANYWHERE, GRADING = 40.0, 1000.0, 0.5
 
 
-def write(path: Path, shapes: list, crs: str, limits: list[float] | None = None) -> Path:
-    """Write shapes as a layer, with a field max_error if there are limits."""
-    fields = [] if limits is None else ["max_error"]
-    values = [] if limits is None else [np.array(limits)]
+def write(path: Path, shapes: list, crs: str, **fields: list[float]) -> Path:
+    """Write shapes as a layer, with fields."""
     pyogrio.raw.write(
-        path, shapely.to_wkb(np.array(shapes)), values, fields,
-        geometry_type=shapes[0].geom_type, crs=crs, layer=path.stem,
+        path, shapely.to_wkb(np.array(shapes)), [np.array(v) for v in fields.values()],
+        list(fields), geometry_type=shapes[0].geom_type, crs=crs, layer=path.stem,
     )  # fmt: skip
     return path
 
@@ -58,9 +58,13 @@ def main(dem: str, mesh: str, picture: str) -> None:
             clip=write(here / "domain.gpkg", [domain.difference(building)], crs),
         )
         zone = dike.buffer(0.03 * width)
-        zones = write(here / "zones.gpkg", [zone], crs, [5.0])
+        zones = write(here / "zones.gpkg", [zone], crs, max_error=[5.0])
+        around = [building.buffer(0.003 * width)]
+        sizes = write(here / "sizes.gpkg", around, crs, longest_edge=[AT_BUILDING])
         tin = wg.simplify(terrain, max_error=40.0, zones=zones)
-    made = tin.for_solver(min_angle=MIN_ANGLE)
+        made = tin.for_solver(
+            min_angle=MIN_ANGLE, longest_edge=ANYWHERE, size_zones=sizes, grading=GRADING
+        )
     wg.save(made, mesh, overwrite=True)
     for name, one in (("TIN", tin), ("mesh", made)):
         print(f"{name}: {one.mesh.n_vertices:,} nodes, {one.mesh.n_faces:,} triangles")

@@ -2,8 +2,8 @@
 
 usage: python examples/tolerance_by_place.py DEM.tif PICTURE.png STRICT FIELD ELSEWHERE
 
-The zones are a corridor across the DEM and a half of it; they are written as a GeoPackage, and
-`terrain-wavelets simplify` reads them from there.
+The zones are a corridor across the DEM and a half of it, written as a GeoPackage, from where
+`simplify` reads them. The same is then taken out of a stored pyramid.
 """
 
 from __future__ import annotations
@@ -52,11 +52,16 @@ def draw(dem: str, picture: str, strict: float, field: float, elsewhere: float) 
         path = Path(folder) / "zones.gpkg"
         shapes = zones_of(dem, strict, field, path)
         tin = wg.simplify(terrain, max_error=elsewhere, zones=path)
-    for zone in tin.zones:
-        print(
-            f"within {zone.most:g}: {zone.n_points:,} cells, {zone.n_vertices:,} vertices, "
-            f"RMSE {zone.rmse:.3g}, largest error {zone.max_error:.4g}"
-        )
+        wg.save(wg.analyse(terrain), Path(folder) / "pyramid.gpkg")
+        stored = wg.load(Path(folder) / "pyramid.gpkg")
+        taken = wg.extract(stored, max_error=elsewhere, zones=path, refine=None)
+    for name, surface in (("simplified", tin), ("out of a stored pyramid", taken)):
+        print(f"{name}: {surface.mesh.n_vertices:,} vertices")
+        for zone in surface.zones:
+            print(
+                f"  within {zone.most:g}: {zone.n_points:,} cells, {zone.n_vertices:,} vertices, "
+                f"RMSE {zone.rmse:.3g}, largest error {zone.max_error:.4g}"
+            )
     mesh = tin.file_mesh
     triangles = mesh.vertices[mesh.faces][:, :, :2]
     centres = shapely.points(triangles.mean(axis=1))

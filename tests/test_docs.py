@@ -114,8 +114,8 @@ def write_breaklines(folder):
     pyogrio.raw.write(
         folder / "zones.gpkg",
         shapely.to_wkb(np.array([line.buffer(20.0), domain])),
-        [np.array([0.05, 0.5])],
-        ["max_error"],
+        [np.array([0.05, 0.5]), np.array([15.0, 40.0])],
+        ["max_error", "longest_edge"],
         geometry_type="Polygon",
         crs="EPSG:32632",
     )

@@ -22,7 +22,7 @@ from ..parameters.surface_output import (
     write_surface,
 )
 from ..parameters.tolerance import (
-    ToleranceInput,
+    LayersByPlace,
     add_tolerance_parameters,
     is_by_place,
     limits_of,
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 class ExtractLevel(PyramidAlgorithm):
     """Pyramid to the surface at one level."""
 
-    tolerance: ToleranceInput
+    tolerance: LayersByPlace
 
     GROUP = "reconstruction"
 

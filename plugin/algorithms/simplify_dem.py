@@ -25,7 +25,7 @@ from ..parameters.surface_output import (
     write_surface,
 )
 from ..parameters.tolerance import (
-    ToleranceInput,
+    LayersByPlace,
     add_tolerance_parameters,
     is_by_place,
     limits_of,
@@ -37,7 +37,13 @@ from ..ui.enums import POLYGONS, REAL_NUMBER, WHOLE_NUMBER
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from ._dem_input import DemInput
-from ._solver_input import add_solver_parameters, for_solver, solver_packages, solver_refusal
+from ._solver_input import (
+    add_solver_parameters,
+    for_solver,
+    solver_packages,
+    solver_refusal,
+    take_sizes,
+)
 
 if TYPE_CHECKING:
     from wavelet_gis.model.terrain import Terrain
@@ -59,7 +65,8 @@ class SimplifyDem(DemInput):
 
     GROUP = "analysis"
     PAGE = "surface"
-    tolerance: ToleranceInput
+    tolerance: LayersByPlace
+    sizes: LayersByPlace
     #: Whether the TIN is what a first click gives.
     IS_TIN_BY_DEFAULT: ClassVar[bool] = True
 
@@ -213,7 +220,7 @@ class SimplifyDem(DemInput):
     def take_layers(self, request: Request) -> None:
         """Take from the layers, in their own thread, what reading them needs."""
         super().take_layers(request)
-        self.tolerance = take_tolerance(request)
+        self.tolerance, self.sizes = take_tolerance(request), take_sizes(request)
 
     def packages(self, request: Request) -> tuple[Package, ...]:
         """Return what writing the mesh needs."""
@@ -255,7 +262,7 @@ class SimplifyDem(DemInput):
                 **options,
             )
 
-        simplified = for_solver(request, request.computed(compute, 0.15, 0.65))
+        simplified = for_solver(request, request.computed(compute, 0.15, 0.65), self.sizes)
         figures = {
             **surface_figures(simplified),
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,

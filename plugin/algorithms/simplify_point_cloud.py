@@ -12,6 +12,7 @@ from ..parameters.tolerance import take_tolerance
 from ..ui import dependencies
 from ..ui.translation import tr
 from ._cloud_input import CloudInput
+from ._solver_input import take_sizes
 from .simplify_dem import SimplifyDem
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class SimplifyPointCloud(CloudInput, SimplifyDem):
     def take_layers(self, request: Request) -> None:
         """Take from the layers, in their own thread, what reading them needs."""
         CloudInput.take_layers(self, request)
-        self.tolerance = take_tolerance(request)
+        self.tolerance, self.sizes = take_tolerance(request), take_sizes(request)
 
     def packages(self, request: Request) -> tuple[dependencies.Package, ...]:
         """Return what reading and writing the files needs."""

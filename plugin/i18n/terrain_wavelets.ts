@@ -305,12 +305,47 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>By how much edges may grow for each unit of distance, from where sizes or the TIN are finer; such as 0.2.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Field with the largest area</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Field with the longest edge</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Give a raster of longest edges, or one longest edge, not both.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Give zones of other sizes and a field with their size, or neither.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Growth of edges for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>In degrees, at most 30; 25 where another of these bounds is given. Nodes are added to the TIN until all bounds hold. Needs the Python packages cgal and shapely.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>In the unit of the CRS, metres for degrees: no edge is longer.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Instead of one number: the longest edge by place; any where there is no data.</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -340,12 +375,32 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Of the zones of other sizes.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Polygons with a longest edge or a largest area of their own; where several overlap, the least counts. The sizes above hold outside.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Raster of longest edges</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>Shortest edge for a solver</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>Smallest angle for a solver</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Zones of other sizes for a solver</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

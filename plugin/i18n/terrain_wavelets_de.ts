@@ -305,6 +305,36 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>By how much edges may grow for each unit of distance, from where sizes or the TIN are finer; such as 0.2.</source>
+    <translation>Um wie viel Kanten je Einheit der Entfernung wachsen dürfen, von dort aus, wo die Größen oder das TIN feiner sind; etwa 0,2.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Field with the largest area</source>
+    <translation>Feld mit der größten Fläche</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Field with the longest edge</source>
+    <translation>Feld mit der längsten Kante</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Give a raster of longest edges, or one longest edge, not both.</source>
+    <translation>Geben Sie ein Raster der längsten Kanten oder eine längste Kante an, nicht beides.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Give zones of other sizes and a field with their size, or neither.</source>
+    <translation>Geben Sie Zonen anderer Größe und ein Feld mit ihrer Größe an, oder keines von beiden.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Growth of edges for a solver</source>
+    <translation>Wachstum der Kanten für einen Löser</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>In degrees, at most 30; 25 where another of these bounds is given. Nodes are added to the TIN until all bounds hold. Needs the Python packages cgal and shapely.</source>
     <translation>In Grad, höchstens 30; 25, wenn eine andere dieser Schranken angegeben ist. Dem TIN werden Knoten hinzugefügt, bis alle Schranken eingehalten sind. Braucht die Python-Pakete cgal und shapely.</translation>
   </message>
@@ -312,6 +342,11 @@
     <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>In the unit of the CRS, metres for degrees: no edge is longer.</source>
     <translation>In der Einheit des KBS, bei Grad in Metern: keine Kante ist länger.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Instead of one number: the longest edge by place; any where there is no data.</source>
+    <translation>Statt einer Zahl: die längste Kante nach Ort; beliebig, wo keine Daten sind.</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_solver_input.py"/>
@@ -340,6 +375,21 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Of the zones of other sizes.</source>
+    <translation>Der Zonen anderer Größe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Polygons with a longest edge or a largest area of their own; where several overlap, the least counts. The sizes above hold outside.</source>
+    <translation>Polygone mit eigener längster Kante oder größter Fläche; wo sich mehrere überlappen, gilt die kleinste. Außerhalb gelten die Größen oben.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Raster of longest edges</source>
+    <translation>Raster der längsten Kanten</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>Shortest edge for a solver</source>
     <translation>Kürzeste Kante für einen Löser</translation>
   </message>
@@ -347,6 +397,11 @@
     <location filename="../../plugin/algorithms/_solver_input.py"/>
     <source>Smallest angle for a solver</source>
     <translation>Kleinster Winkel für einen Löser</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_solver_input.py"/>
+    <source>Zones of other sizes for a solver</source>
+    <translation>Zonen anderer Größe für einen Löser</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/_tiles_input.py"/>

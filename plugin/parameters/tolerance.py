@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 CHUNK = 10_000
 
 
-class ToleranceInput(NamedTuple):
+class LayersByPlace(NamedTuple):
     """What must be taken from the layers in their own thread."""
 
     zones: QgsProcessingFeatureSource | None
@@ -89,20 +89,23 @@ def tolerance_refusal(request: Request) -> str | None:
     return None
 
 
-def take_tolerance(request: Request) -> ToleranceInput:
+def take_tolerance(request: Request) -> LayersByPlace:
     """Take from the layers, in their own thread, what reading them needs."""
+    return take_layers_by_place(request, "ZONES", "TOLERANCE")
+
+
+def take_layers_by_place(request: Request, zones: str, raster: str) -> LayersByPlace:
+    """Take what two parameters name, in the thread of their layers."""
     from ..qgis_io.raster_reader import RasterInput
 
-    layer = request.algorithm.parameterAsRasterLayer(
-        request.parameters, "TOLERANCE", request.context
-    )
-    raster = None if layer is None else RasterInput.from_layer(layer, 1)
-    return ToleranceInput(request.source("ZONES"), raster)
+    layer = request.algorithm.parameterAsRasterLayer(request.parameters, raster, request.context)
+    of_layer = None if layer is None else RasterInput.from_layer(layer, 1)
+    return LayersByPlace(request.source(zones), of_layer)
 
 
 def limits_of(
     request: Request,
-    given: ToleranceInput,
+    given: LayersByPlace,
     place: Place,
     mesh: TriangleMesh,
 ) -> NDArray[np.float64]:
@@ -113,15 +116,41 @@ def limits_of(
     QgsProcessingException
         Zones that no vertex is in.
     """
+    return values_at(
+        request,
+        place,
+        mesh,
+        ByPlace(request.number("MAX_ERROR"), given.raster, given.zones, request.text("ZONE_FIELD")),
+    )
+
+
+class ByPlace(NamedTuple):
+    """What gives a number by place: a raster instead of one number, a field of polygons inside."""
+
+    number: float | None
+    raster: RasterInput | None
+    zones: QgsProcessingFeatureSource | None
+    field: str
+
+
+def values_at(
+    request: Request, place: Place, mesh: TriangleMesh, given: ByPlace
+) -> NDArray[np.float64]:
+    """Return the number of each vertex of a mesh; NaN where nothing says it.
+
+    Raises
+    ------
+    QgsProcessingException
+        A raster or zones that no vertex is in.
+    """
     wkt = place.system.wkt
     crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if wkt else QgsCoordinateReferenceSystem()
     positions = request.computed(lambda work: place.frame.to_file(mesh.vertices), 0.05, 0.05)
-    outside = request.number("MAX_ERROR")
-    limits = np.full(len(positions), np.nan if outside is None else outside)
+    limits = np.full(len(positions), np.nan if given.number is None else given.number)
     if given.raster is not None:
         limits[:] = _of_raster(request, given.raster, positions, crs)
     if given.zones is not None:
-        _set_in_zones(request, given.zones, positions, crs, limits)
+        _set_in_zones(request, given.zones, given.field, positions, crs, limits)
     return limits
 
 
@@ -177,6 +206,7 @@ def _moved(
 def _set_in_zones(
     request: Request,
     zones: QgsProcessingFeatureSource,
+    field: str,
     positions: NDArray[np.float64],
     crs: QgsCoordinateReferenceSystem,
     limits: NDArray[np.float64],
@@ -184,7 +214,7 @@ def _set_in_zones(
     from ..qgis_io.geometry import rows_in
     from ..qgis_io.vectors import features_in, number_of
 
-    field, shapes = request.text("ZONE_FIELD"), []
+    shapes = []
     for feature in features_in(zones, crs, request.transforms, request.feedback):
         value = number_of(feature, field)
         if value is not None and value == value:  # not NaN

@@ -221,6 +221,19 @@ def test_a_selafin_mesh_opens_as_a_mesh_layer_with_its_bed(run, tmp_path):
         assert bed.value(k).scalar() == pytest.approx(there.z(), rel=1e-14)
 
 
+def one_polygon(rectangle, **fields):
+    from qgis.core import QgsFeature, QgsGeometry, QgsVectorLayer
+
+    of_fields = "".join(f"&field={name}:double" for name in fields)
+    layer = QgsVectorLayer(f"Polygon?crs=EPSG:2154{of_fields}", "zones", "memory")
+    feature = QgsFeature(layer.fields())
+    feature.setGeometry(QgsGeometry.fromRect(rectangle))
+    for name, value in fields.items():
+        feature.setAttribute(name, value)
+    layer.dataProvider().addFeatures([feature])
+    return layer
+
+
 class TestSolverMesh:
     @pytest.fixture
     def dem(self, tmp_path):
@@ -269,3 +282,61 @@ class TestSolverMesh:
             sides = [np.hypot(a[0] - b[0], a[1] - b[1]) for a, b in combinations(corners, 2)]
             assert max(sides) <= 60.0 + 1e-6
         assert any(line.startswith("Angles ") for line in log.lines)
+
+    def test_sizes_of_zones_and_of_a_raster_hold(self, run, dem, tmp_path):
+        """Each triangle against the input points in it, for the point of the zone's own fields."""
+        pytest.importorskip("CGAL")
+        pytest.importorskip("shapely")
+        from qgis.core import QgsPointXY, QgsRasterLayer, QgsRectangle
+
+        frame = QgsRasterLayer(dem).extent()
+        middle = (frame.xMinimum() + frame.xMaximum()) / 2
+        zone = QgsRectangle(frame.xMinimum(), frame.yMinimum(), middle, frame.yMaximum())
+        zones = one_polygon(zone, edge=12.0, area=150.0)
+        parameters = {"INPUT": dem, "VERTICES": 100, "TIN": "memory:", "SIZE_ZONES": zones}
+        step = frame.width() / 50
+        for options, left, right in (
+            ({"SIZE_FIELD": "edge", "LONGEST_EDGE": 60.0}, 12.0, 60.0),
+            ({"AREA_FIELD": "area"}, (150.0 * 4 / 3**0.5) ** 0.5, np.inf),
+            ({"SIZE_FIELD": "edge", "GRADING": 0.5}, 12.0, np.inf),
+        ):
+            made = run("simplifydem", {**parameters, **options})
+            n_inside = 0
+            for feature in made["TIN"].getFeatures():
+                geometry = feature.geometry()
+                corners = [(v.x(), v.y()) for v in geometry.vertices()][:3]
+                longest = max(
+                    np.hypot(a[0] - b[0], a[1] - b[1]) for a, b in combinations(corners, 2)
+                )
+                box = geometry.boundingBox()
+                for x in np.arange(frame.xMinimum() + step / 2, box.xMaximum(), step):
+                    for y in np.arange(frame.yMinimum() + step / 2, box.yMaximum(), step):
+                        if x < box.xMinimum() or y < box.yMinimum():
+                            continue
+                        if geometry.contains(QgsPointXY(x, y)):
+                            n_inside += 1
+                            assert longest <= (left if x < middle else right) + 1e-6
+            assert n_inside > 500
+        sizes = np.full((40, 50), 12.0, dtype="float32")
+        raster = write_raster(tmp_path / "sizes.tif", sizes)
+        made = run(
+            "simplifydem", {"INPUT": dem, "VERTICES": 100, "TIN": "memory:", "SIZE_RASTER": raster}
+        )
+        for feature in made["TIN"].getFeatures():
+            corners = [(v.x(), v.y()) for v in feature.geometry().vertices()][:3]
+            sides = [np.hypot(a[0] - b[0], a[1] - b[1]) for a, b in combinations(corners, 2)]
+            assert max(sides) <= 12.0 + 1e-6
+
+    def test_sizes_that_say_nothing_are_refused(self, provider, dem):
+        from qgis.core import QgsProcessingContext, QgsRectangle
+
+        zones = one_polygon(QgsRectangle(0, 0, 9, 9), edge=5.0)
+        for options, why in (
+            ({"SIZE_ZONES": zones}, "zones of other sizes and a field"),
+            ({"SIZE_RASTER": dem, "LONGEST_EDGE": 5.0}, "not both"),
+        ):
+            parameters = {"INPUT": dem, "TIN": "memory:", "VERTICES": 50, **options}
+            algorithm = provider.algorithm("simplifydem").create()
+            is_fine, told = algorithm.checkParameterValues(parameters, QgsProcessingContext())
+            assert not is_fine
+            assert why in told

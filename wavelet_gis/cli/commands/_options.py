@@ -33,6 +33,7 @@ __all__ = [
     "length",
     "line_options",
     "names",
+    "number_or_text",
     "open_given",
     "reading_options",
     "surface_formats",
@@ -245,8 +246,9 @@ def input_files(arguments: argparse.Namespace) -> tuple[str, ...]:
 
 
 def tolerance_files(arguments: argparse.Namespace) -> tuple[str, ...]:
-    """Return the files that a tolerance by place comes from, and a formula that is none."""
-    named = (getattr(arguments, "zones", None), getattr(arguments, "max_error", None))
+    """Return the files that tolerances and sizes by place come from, and formulas that are none."""
+    options = ("zones", "max_error", "size_zones", "longest_edge", "max_area")
+    named = (getattr(arguments, option, None) for option in options)
     return tuple(name for name in named if isinstance(name, str))
 
 
@@ -254,7 +256,7 @@ def add_max_error_argument(rule: Any, help_text: str) -> None:
     """Add the largest error, a number or what gives one by place."""
     rule.add_argument(
         "--max-error",
-        type=_number_or_text,
+        type=number_or_text,
         metavar="M",
         help=f"{help_text}; in the unit of z. By place: a raster, or a formula such as "
         "'max(0.1, 0.02 * slope)' of z and slope (degrees). Points that share x and y with a "
@@ -433,7 +435,8 @@ def add_layers_argument(parser: argparse.ArgumentParser, default: str | None = "
     )
 
 
-def _number_or_text(text: str) -> float | str:
+def number_or_text(text: str) -> float | str:
+    """Return a length, or the text that gives one by place."""
     try:
         return length(text)
     except ValueError:

@@ -18,6 +18,7 @@ from wavelet_gis.cli.commands._options import (
     add_zone_arguments,
     input_files,
     length,
+    number_or_text,
     open_given,
     surface_formats,
     surface_options,
@@ -33,6 +34,18 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.simplify import Simplified
 
 ORDER = 50
+
+#: Keywords of `Simplified.for_solver`, of which any asks for a mesh.
+SOLVER_OPTIONS = (
+    "min_angle",
+    "longest_edge",
+    "shortest_edge",
+    "max_area",
+    "size_zones",
+    "size_field",
+    "area_field",
+    "grading",
+)
 HELP = (
     "Write the TIN of a number of vertices, or of an accuracy, with the least error, as "
     f"{surface_formats()}; of a point cloud also its points that carry that TIN, as LAS or LAZ."
@@ -107,14 +120,14 @@ def run(arguments: argparse.Namespace, console: Console) -> None:
     from wavelet_gis.workflows.simplification.thinning import cloud_to_thin
     from wavelet_gis.workflows.simplify import simplify
     from wavelet_gis.workflows.solver.delaunay import require_cgal
-    from wavelet_gis.workflows.solver.solver_mesh import SolverRules
+    from wavelet_gis.workflows.solver.sizes import rules_of
 
     is_thinning = suffix_of(arguments.output) in CLOUD_SUFFIXES
     options, solver = surface_options(arguments), _solver_options(arguments)
     _check_output(arguments, is_thinning, {**options, **solver})
     if solver:
         require_cgal()
-        SolverRules(**solver).require_sense()
+        rules_of(**solver).require_sense()
     began = perf_counter()
     terrain = open_given(arguments)
     rounds = arguments.refine
@@ -207,16 +220,46 @@ def _add_solver_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--min-angle", type=float, metavar="DEGREES", help="25 by default, 30 at most"
     )
-    group.add_argument("--longest-edge", type=length, metavar="M", help="no edge is longer")
+    group.add_argument(
+        "--longest-edge",
+        type=number_or_text,
+        metavar="M",
+        help="no edge is longer; by place: a raster, or a formula such as "
+        "'where(slope > 20, 5, 50)' of z and slope (degrees)",
+    )
     group.add_argument(
         "--shortest-edge", type=length, metavar="M", help="no two vertices of the TIN are nearer"
     )
-    group.add_argument("--max-area", type=length, metavar="M2", help="no triangle is larger")
+    group.add_argument(
+        "--max-area",
+        type=number_or_text,
+        metavar="M2",
+        help="no triangle is larger; by place in the same way",
+    )
+    group.add_argument(
+        "--size-zones",
+        metavar="FILE",
+        help="polygons with sizes of their own; the others hold outside",
+    )
+    group.add_argument(
+        "--size-field",
+        metavar="NAME",
+        help="the field of these with the longest edge, longest_edge by default",
+    )
+    group.add_argument(
+        "--area-field", metavar="NAME", help="the field of these with the largest area"
+    )
+    group.add_argument(
+        "--grading",
+        type=length,
+        metavar="G",
+        help="by how much edges may grow for each unit of distance, from where sizes or the TIN "
+        "are finer; such as 0.2",
+    )
 
 
-def _solver_options(arguments: argparse.Namespace) -> dict[str, float]:
-    names = ("min_angle", "longest_edge", "shortest_edge", "max_area")
-    given = {name: getattr(arguments, name) for name in names}
+def _solver_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    given = {name: getattr(arguments, name) for name in SOLVER_OPTIONS}
     return {name: value for name, value in given.items() if value is not None}
 
 

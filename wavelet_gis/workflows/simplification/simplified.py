@@ -18,7 +18,9 @@ from wavelet_gis.workflows.extract import Surface, SurfaceErrors, measured
 from wavelet_gis.workflows.lines.errors import figures_along_lines, measured_along_lines
 from wavelet_gis.workflows.simplification.thinning import Thinned, thinned
 from wavelet_gis.workflows.solver.quality import MeshQuality, quality_of
-from wavelet_gis.workflows.solver.solver_mesh import SolverMesh, SolverRules, solver_mesh
+from wavelet_gis.workflows.solver.sizes import Sizes, rules_of
+from wavelet_gis.workflows.solver.solver_mesh import SolverMesh, solver_mesh
+from wavelet_gis.workflows.tolerance.by_place import MaxError
 from wavelet_gis.workflows.tolerance.zone_errors import zone_errors
 
 __all__ = ["Simplified"]
@@ -112,9 +114,13 @@ class Simplified(Surface):
         self,
         *,
         min_angle: float = 25.0,
-        longest_edge: float | None = None,
+        longest_edge: MaxError | None = None,
         shortest_edge: float | None = None,
-        max_area: float | None = None,
+        max_area: MaxError | None = None,
+        size_zones: Any = None,
+        size_field: str | None = None,
+        area_field: str | None = None,
+        grading: float | None = None,
         progress: Progress | None = None,
     ) -> Simplified:
         """Return it as a mesh whose angles, edges and areas are within bounds; needs CGAL.
@@ -123,10 +129,23 @@ class Simplified(Surface):
         ----------
         min_angle : float
             Degrees, at most 30. Angles that outline and lines have between them stay.
-        longest_edge, shortest_edge, max_area : float, optional
-            In the unit of x and y, or the metre for a geographic CRS. No two points of the input
-            become nodes that are nearer than ``shortest_edge``, but for those of outline and
+        longest_edge, max_area : float, path, str, array_like or callable, optional
+            In the unit of x and y, or the metre for a geographic CRS: one number, or what gives
+            one by place as for ``max_error`` of `wavelet_gis.simplify`; NaN for any. By place, no
+            triangle has a longer edge than any input vertex in it allows, nor than those nearest
+            to its corners do; an area counts as the even triangle of that area.
+        shortest_edge : float, optional
+            No two points of the input become nodes that are nearer, but for those of outline and
             lines; the triangulation itself may make an edge shorter where an angle needs it.
+        size_zones : path or GeoDataFrame, optional
+            Polygons with sizes of their own; where several overlap the least counts.
+        size_field, area_field : str, optional
+            Fields of theirs that hold the longest edge, ``longest_edge`` if neither is named, and
+            the largest area.
+        grading : float, optional
+            By how much edges may grow for each unit of distance: from where the sizes above are
+            smaller, and from each vertex of the TIN, where edges may be twice as long as the
+            distance to the nearest other one.
         progress : callable, optional
             Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -148,14 +167,18 @@ class Simplified(Surface):
         """
         assert self.terrain is not None
         terrain, z_scale = self.terrain, self.terrain.frame.z_scale
+        sizes = Sizes(longest_edge, max_area, size_zones, size_field, area_field)
+        rules = rules_of(min_angle, longest_edge, shortest_edge, max_area, *sizes[2:], grading)
+        rules.require_sense()
         made = solver_mesh(
             self.mesh,
             self.vertex_ids,
             terrain.mesh,
-            SolverRules(min_angle, longest_edge, shortest_edge, max_area),
+            rules,
             locked=terrain.locked,
             segments=terrain.segments,
             limits=None if self.limits is None else self.limits * z_scale,
+            sizes=sizes.at_vertices(terrain),
             progress=progress,
         )
         _warn_of_points_off(terrain.name, made)

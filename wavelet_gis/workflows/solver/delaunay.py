@@ -69,8 +69,8 @@ class DelaunayRefiner:
         Degrees.
     longest_edge : float
         0 for any.
-    area : float
-        Of all that is meshed.
+    n_squares : float
+        How many squares of the longest edge cover all that is meshed, 0 for any edge.
 
     Raises
     ------
@@ -93,22 +93,20 @@ class DelaunayRefiner:
         holes: FloatArray,
         min_angle: float,
         longest_edge: float,
-        area: float,
+        n_squares: float,
     ) -> None:
         kernel, CGAL_Mesh_2 = require_cgal()
         self._point = kernel.Point_2
         self._most = MOST_POINTS * max(len(points), 1000)
-        if longest_edge > 0:
-            n_squares = area / longest_edge**2
-            if n_squares > MOST_SQUARES:
-                raise OptionError(
-                    "with {0} or {1} so small the mesh would have some {n:,.0f} nodes; give larger "
-                    "ones.",
-                    "longest_edge",
-                    "max_area",
-                    n=2 * n_squares,
-                )
-            self._most += int(POINTS_PER_SQUARE * n_squares)
+        if n_squares > MOST_SQUARES:
+            raise OptionError(
+                "with {0} or {1} so small the mesh would have some {n:,.0f} nodes; give larger "
+                "ones.",
+                "longest_edge",
+                "max_area",
+                n=2 * n_squares,
+            )
+        self._most += int(POINTS_PER_SQUARE * n_squares)
         self._mesh = CGAL_Mesh_2.Mesh_2_Constrained_Delaunay_triangulation_2()
         places = [self._point(x, y) for x, y in points.tolist()]
         for a, b in edges.tolist():

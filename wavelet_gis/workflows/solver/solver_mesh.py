@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from wavelet_core import Progress, TriangleMesh
@@ -14,8 +14,9 @@ from wavelet_core.mesh.connectivity import edges_of
 from wavelet_core.mesh.location import cover_of, surface_errors
 from wavelet_core.progress import part_of, report
 from wavelet_gis.workflows.solver.delaunay import LARGEST_MIN_ANGLE, DelaunayRefiner
+from wavelet_gis.workflows.solver.size_field import SizeField, graded, pieces_within
 
-__all__ = ["SolverMesh", "SolverRules", "solver_mesh"]
+__all__ = ["SolverMesh", "SolverRules", "edge_of_area", "solver_mesh"]
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -26,18 +27,28 @@ MOST_ROUNDS = 12
 #: Of an equilateral triangle, edge squared over area.
 _EDGE_SQUARED_PER_AREA = 4 / np.sqrt(3)
 
+#: With a grading, edges at a vertex of the TIN may be so many times as long as to its neighbour.
+_GRADED_FROM = 2.0
+
+
+def edge_of_area(area: ArrayLike) -> FloatArray:
+    """Return the edge of an even triangle: one with no longer edge has no larger area."""
+    return np.sqrt(np.asarray(area, dtype=np.float64) * _EDGE_SQUARED_PER_AREA)
+
 
 class SolverRules(NamedTuple):
     """What a solver asks for, lengths in the working frame.
 
     min_angle : float, degrees; 0 for any
     longest_edge, shortest_edge, max_area : float or None
+    grading : float or None, by how much edges may grow for each unit of distance
     """
 
     min_angle: float = 25.0
     longest_edge: float | None = None
     shortest_edge: float | None = None
     max_area: float | None = None
+    grading: float | None = None
 
     def require_sense(self) -> None:
         """Raise unless the rules can be met.
@@ -54,12 +65,21 @@ class SolverRules(NamedTuple):
                 given=self.min_angle,
                 most=LARGEST_MIN_ANGLE,
             )
-        for name in ("longest_edge", "shortest_edge", "max_area"):
+        for name in ("longest_edge", "shortest_edge", "max_area", "grading"):
             value = getattr(self, name)
             if value is not None and not 0 < value < np.inf:
                 raise OptionError("{0} is {given}; give a size above 0.", name, given=value)
-        shortest, longest = self.shortest_edge or 0.0, self.size_bound or np.inf
-        if 2 * shortest > longest:
+        self.require_room(self.size_bound or np.inf)
+
+    def require_room(self, longest: float) -> None:
+        """Raise unless a longest edge leaves room for the shortest.
+
+        Raises
+        ------
+        OptionError
+            It is less than twice as long.
+        """
+        if 2 * (self.shortest_edge or 0.0) > longest:
             raise OptionError(
                 "{0} is more than half of {1}, or of the edge of {2}; no mesh can be that uniform.",
                 "shortest_edge",
@@ -72,7 +92,7 @@ class SolverRules(NamedTuple):
         """The edge that no triangle may exceed, 0 for any; of an area, that of an even triangle."""
         bounds = [self.longest_edge or np.inf]
         if self.max_area is not None:
-            bounds.append(float(np.sqrt(self.max_area * _EDGE_SQUARED_PER_AREA)))
+            bounds.append(float(edge_of_area(self.max_area)))
         return 0.0 if min(bounds) == np.inf else min(bounds)
 
 
@@ -103,6 +123,7 @@ def solver_mesh(
     locked: NDArray[np.bool_] | None = None,
     segments: FloatArray | None = None,
     limits: FloatArray | None = None,
+    sizes: FloatArray | None = None,
     progress: Progress | None = None,
 ) -> SolverMesh:
     """Return a mesh of the terrain that has a TIN's vertices, and angles and edges within bounds.
@@ -125,6 +146,11 @@ def solver_mesh(
     limits : (n_original,) float64, optional
         How far each of its vertices may be off, vertically; where one is farther, it becomes a
         node, as far as ``shortest_edge`` allows.
+    sizes : (n_original,) float64, optional
+        The longest edge at each of its vertices, above 0, infinite for any: no triangle has a
+        longer one than any vertex in it, or nearest to a corner of it, has for its size. With a
+        grading of the rules, sizes are made to grow no faster, also from each vertex of the TIN,
+        where edges may be twice as long as the way to the nearest other one.
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
 
@@ -148,22 +174,27 @@ def solver_mesh(
     kept = _apart(tin.vertices[:, :2], holds, rules.shortest_edge or 0.0)
     position = np.full(tin.n_vertices, -1)
     position[kept] = np.arange(len(kept))
+    plan = original.vertices[:, :2] - origin
+    places, pieces = tin.vertices[kept, :2] - origin, position[edges]
+    longest, n_squares = rules.size_bound, 0.0
+    field = None
+    if sizes is not None or rules.grading is not None:
+        sizes = _sizes_by_place(rules, original, sizes, vertex_ids[kept])
+        field = SizeField(plan, sizes)
+        places, pieces = pieces_within(places, pieces, field)
+        longest = float(sizes.max()) if np.isfinite(sizes).all() else 0.0
+        n_squares = float((original.plan_areas / sizes[original.faces].min(axis=1) ** 2).sum())
+    elif longest > 0:
+        n_squares = float(tin.plan_areas.sum()) / longest**2
     work = DelaunayRefiner(
-        tin.vertices[kept, :2] - origin,
-        position[edges],
-        _places_in_holes(tin, outline) - origin,
-        rules.min_angle,
-        rules.size_bound,
-        float(tin.plan_areas.sum()),
+        places, pieces, _places_in_holes(tin, outline) - origin, rules.min_angle, longest, n_squares
     )
     given = {tuple(place): int(vertex_ids[row]) for row, place in
              zip(kept, (tin.vertices[kept, :2] - origin).tolist(), strict=True)}  # fmt: skip
-    plan = original.vertices[:, :2] - origin
     worst = np.empty(0, dtype=np.int64)
     for number in range(MOST_ROUNDS + 1):
         part = part_of(progress, number / (MOST_ROUNDS + 1), (number + 1) / (MOST_ROUNDS + 1))
-        work.refine(part)
-        points, faces = work.result()
+        points, faces = _refined(work, field, places[pieces], part)
         mesh, ids = _on_terrain(points, faces, given, original, origin)
         missed = _missed(mesh, original, limits)
         if number == MOST_ROUNDS or len(missed) == 0:
@@ -178,6 +209,37 @@ def solver_mesh(
     return SolverMesh(
         mesh, ids, tin.n_vertices - n_known, mesh.n_vertices - n_known, len(missed), len(worst) == 0
     )
+
+
+def _sizes_by_place(
+    rules: SolverRules, original: TriangleMesh, sizes: FloatArray | None, vertex_ids: IntArray
+) -> FloatArray:
+    """Return the longest edge at each vertex of the terrain, by all rules."""
+    bound = rules.size_bound or np.inf
+    found = np.full(original.n_vertices, bound) if sizes is None else np.minimum(sizes, bound)
+    rules.require_room(float(found.min()))
+    if rules.grading is None:
+        return found
+    plan = original.vertices[vertex_ids, :2]
+    nearest = cKDTree(plan).query(plan, k=2)[0][:, 1]
+    found[vertex_ids] = np.minimum(found[vertex_ids], _GRADED_FROM * nearest)
+    return graded(original, found, rules.grading)
+
+
+def _refined(
+    work: DelaunayRefiner,
+    field: SizeField | None,
+    boundaries: FloatArray,
+    progress: Progress | None,
+) -> tuple[FloatArray, IntArray]:
+    """Return points and triangles once their angles and sizes are as they should be."""
+    while True:
+        work.refine(progress)
+        points, faces = work.result()
+        more = None if field is None else field.places_to_add(points, faces, boundaries)
+        if more is None or len(more) == 0:
+            return points, faces
+        work.add(more)
 
 
 # -- what is given to the refinement -------------------------------------------------------------

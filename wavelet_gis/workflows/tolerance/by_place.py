@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,7 +22,15 @@ from wavelet_gis.workflows.lines.layer_shapes import (
 )
 from wavelet_gis.workflows.tolerance.formula import parsed, value_of
 
-__all__ = ["MaxError", "is_by_place", "tolerances", "values_in_cells"]
+__all__ = [
+    "ByPlace",
+    "MaxError",
+    "is_by_place",
+    "is_number",
+    "tolerances",
+    "values_by_place",
+    "values_in_cells",
+]
 
 FloatArray = NDArray[np.float64]
 
@@ -40,7 +48,7 @@ def is_by_place(
     """Return whether a tolerance differs from place to place."""
     if zones is None and zone_field is not None:
         raise OptionError("{0} goes with {1}; give both or neither.", "zone_field", "zones")
-    return zones is not None or not (max_error is None or _is_number(max_error))
+    return zones is not None or not (max_error is None or is_number(max_error))
 
 
 def tolerances(
@@ -81,11 +89,8 @@ def tolerances(
     OptionError
         A formula that is none, numbers of another length, negative ones or none for some vertex.
     """
-    limits = np.full(mesh.n_vertices, np.nan)
-    if max_error is not None:
-        limits[:] = _of_terrain(place, mesh, max_error)
-    if zones is not None:
-        _set_in_zones(limits, place, mesh, zones, zone_field or ZONE_FIELD)
+    options = ByPlace("max_error", "zones", "zone_field")
+    limits = values_by_place(place, mesh, max_error, zones, zone_field or ZONE_FIELD, options)
     n_without = int(np.isnan(limits).sum())
     if n_without:
         raise OptionError(
@@ -106,28 +111,76 @@ def tolerances(
     return limits
 
 
-def _of_terrain(place: Place, mesh: TriangleMesh, max_error: MaxError) -> ArrayLike:
-    if _is_number(max_error):
-        return float(max_error)  # type: ignore[arg-type]
-    if isinstance(max_error, str):
-        formula = parsed(max_error)
+class ByPlace(NamedTuple):
+    """The options that say something by place, for errors.
+
+    values : str, of a number or what gives one by place
+    zones, field : str, of polygons, and of the field of theirs that holds it
+    """
+
+    values: str
+    zones: str
+    field: str
+
+
+def values_by_place(
+    place: Place,
+    mesh: TriangleMesh,
+    given: MaxError | None,
+    zones: Any,
+    field: str,
+    options: ByPlace,
+) -> FloatArray:
+    """Return numbers for the vertices of a terrain, NaN where nothing says any.
+
+    Parameters
+    ----------
+    place, mesh, zones
+        See `tolerances`.
+    given : float, path, str, array_like or callable, optional
+        What ``max_error`` is to `tolerances`.
+    field : str
+        Of the zones, where there are some.
+    options : ByPlace
+        Their names.
+
+    Raises
+    ------
+    InputFileError
+        A file that cannot be read, or that has no number for any vertex.
+    OptionError
+        A formula that is none, or numbers of another length.
+    """
+    values = np.full(mesh.n_vertices, np.nan)
+    if given is not None:
+        values[:] = _of_terrain(place, mesh, given, options.values)
+    if zones is not None:
+        _set_in_zones(values, place, mesh, zones, field, options)
+    return values
+
+
+def _of_terrain(place: Place, mesh: TriangleMesh, given: MaxError, option: str) -> ArrayLike:
+    if is_number(given):
+        return float(given)  # type: ignore[arg-type]
+    if isinstance(given, str):
+        formula = parsed(given)
         if formula is not None:
-            value: ArrayLike = value_of(formula, _variables(place, mesh), max_error)
+            value: ArrayLike = value_of(formula, _variables(place, mesh), given, option)
             if np.asarray(value).dtype == bool:
                 raise OptionError(
                     "{0} {text!r} is a comparison, not a distance; write where(condition, a, b).",
-                    "max_error",
-                    text=max_error,
+                    option,
+                    text=given,
                 )
             return value
-    if isinstance(max_error, str | os.PathLike):
-        return _of_raster(place, mesh, max_error)
-    values = np.asarray(max_error(mesh) if callable(max_error) else max_error)
+    if isinstance(given, str | os.PathLike):
+        return _of_raster(place, mesh, given)
+    values = np.asarray(given(mesh) if callable(given) else given)
     if values.shape not in ((), (mesh.n_vertices,)) or values.dtype.kind not in "iuf":
         raise OptionError(
             "{0} has the shape {shape} and type {dtype}; give one number for each of {n} input "
             "points.",
-            "max_error",
+            option,
             shape=values.shape,
             dtype=values.dtype,
             n=mesh.n_vertices,
@@ -142,7 +195,8 @@ def _variables(place: Place, mesh: TriangleMesh) -> dict[str, Callable[[], Float
     }
 
 
-def _is_number(max_error: object) -> bool:
+def is_number(max_error: object) -> bool:
+    """Return whether an option is one number, also as a text."""
     if isinstance(max_error, str):
         try:
             float(max_error)
@@ -195,26 +249,31 @@ def _of_raster(place: Place, mesh: TriangleMesh, path: str | os.PathLike[str]) -
 
 
 def _set_in_zones(
-    limits: FloatArray, place: Place, mesh: TriangleMesh, zones: Any, field: str
+    limits: FloatArray,
+    place: Place,
+    mesh: TriangleMesh,
+    zones: Any,
+    field: str,
+    options: ByPlace,
 ) -> None:
     import shapely
 
     name = os.fspath(zones) if isinstance(zones, str | os.PathLike) else type(zones).__name__
-    shapes, given = shapes_in_frame(place, zones, "zones", POLYGONS, field, "zone_field")
+    shapes, given = shapes_in_frame(place, zones, options.zones, POLYGONS, field, options.field)
     assert given is not None
     try:
         values = np.array([np.nan if value is None else float(value) for value in given])
     except (TypeError, ValueError) as error:
         raise InputFileError(
             "{name}: field {field!r} does not hold numbers; name another with {0}.",
-            "zone_field",
+            options.field,
             name=name,
             field=field,
         ) from error
     if (values < 0).any():
         raise InputFileError(
-            "{name}: field {field!r} holds {value:g}; largest errors are 0 or more ({0}).",
-            "zone_field",
+            "{name}: field {field!r} holds {value:g}; give 0 or more ({0}).",
+            options.field,
             name=name,
             field=field,
             value=float(np.nanmin(values)),

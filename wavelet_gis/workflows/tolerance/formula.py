@@ -55,11 +55,16 @@ def parsed(text: str) -> ast.expr | None:
     return formula
 
 
-def value_of(part: ast.expr, variables: Mapping[str, Callable[[], FloatArray]], text: str) -> Any:
+def value_of(
+    part: ast.expr,
+    variables: Mapping[str, Callable[[], FloatArray]],
+    text: str,
+    option: str = "max_error",
+) -> Any:
     """Return what a part of a formula comes to; only numbers, names and calls that are known."""
 
     def of(node: ast.expr) -> Any:
-        return value_of(node, variables, text)
+        return value_of(node, variables, text, option)
 
     if isinstance(part, ast.Constant) and isinstance(part.value, int | float):
         try:
@@ -86,7 +91,7 @@ def value_of(part: ast.expr, variables: Mapping[str, Callable[[], FloatArray]], 
             except (TypeError, ValueError) as error:
                 raise OptionError(
                     "{0} {text!r}: {call} takes other arguments ({reason}).",
-                    "max_error",
+                    option,
                     text=text,
                     call=part.func.id,
                     reason=str(error).split("\n")[0],
@@ -94,7 +99,7 @@ def value_of(part: ast.expr, variables: Mapping[str, Callable[[], FloatArray]], 
     raise OptionError(
         "{0} {text!r} is not an existing raster, and as a formula {part!r} is not understood; "
         "formulas have numbers, {names}, + - * / **, comparisons and {calls}.",
-        "max_error",
+        option,
         text=text,
         part=ast.unparse(part),
         names=" and ".join(variables),
