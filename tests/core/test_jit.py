@@ -8,10 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import wavelet_core
 from wavelet_core import OptionError, SlowFallbackWarning
 from wavelet_core._kernels import _jit
+from wavelet_core._validate import distinct
 from wavelet_core.errors import Cancelled
 from wavelet_core.progress import watched
 
@@ -146,3 +149,11 @@ def test_a_compiled_step_reports_while_it_runs_and_stops_when_it_is_told(monkeyp
 
     with _jit.engine("compiled"), watched(stop), pytest.raises(Cancelled, match="told to"):
         _jit.run_in_ranges(counting, n, covered)
+
+
+@given(st.lists(st.integers(-(2**62), 2**62), max_size=30), st.booleans())
+def test_the_different_values_of_an_array_are_those_of_numpy(values, is_table):
+    array = np.array(values + values[:3] + [0], dtype=np.int64)
+    array = np.stack([array, array]) if is_table else array
+    assert distinct(array).tolist() == np.unique(array).tolist()
+    assert distinct(array).dtype == array.dtype

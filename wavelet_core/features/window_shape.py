@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
 from .._kernels.shape import fit_windows
-from .._validate import FloatArray, frozen
+from .._validate import FloatArray, distinct, frozen
 from ..errors import OptionError
 from ..lifting.pyramid import Pyramid
 from ..lifting.spacings import level_spacings
@@ -124,7 +124,7 @@ def window_shape(
     report(progress, 0.4, _STOPPED)
     mesh, radius = pyramid.mesh(at), RADIUS * distance
     fitted = np.full((mesh.n_vertices, 5), np.nan)
-    left = np.unique(mesh.faces)
+    left = distinct(mesh.faces)
     places = points[pyramid._ids_by_level(at)[at]]
     for growth in range(MAX_GROWTHS + 1):
         for first in range(0, len(left), PLACES_AT_ONCE):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._validate import FloatArray, IntArray
+from .._validate import FloatArray, IntArray, distinct
 from ..errors import MeshError, MissingDependencyError, OptionError
 from .constraints import with_edges
 
@@ -185,10 +185,10 @@ def _is_whole(centred: FloatArray, faces: IntArray, peeled: IntArray) -> bool:
     """Return whether every point is used, the faces are a disk, and none is flat once peeled."""
     tails, heads = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     # one number for each edge: rows would be sorted with the interpreter held, for seconds
-    n_edges = len(np.unique(np.minimum(tails, heads) * len(centred) + np.maximum(tails, heads)))
-    if len(np.unique(faces)) != len(centred) or len(centred) - n_edges + len(faces) != 1:
+    n_edges = len(distinct(np.minimum(tails, heads) * len(centred) + np.maximum(tails, heads)))
+    if len(distinct(faces)) != len(centred) or len(centred) - n_edges + len(faces) != 1:
         return False
-    return len(np.unique(peeled)) == len(centred) and bool(
+    return len(distinct(peeled)) == len(centred) and bool(
         (_doubled_areas(centred, peeled) > 0).all()
     )
 

@@ -414,7 +414,8 @@ def _points_of(
         of_tile = cells_of(plan, mesh)
         is_taken = _scattered(of_tile) < share
         if share < 1.0:
-            is_taken |= np.isin(of_tile, vertices)
+            place = np.minimum(np.searchsorted(vertices, of_tile), len(vertices) - 1)
+            is_taken |= vertices[place] == of_tile
         cells.append(of_tile[is_taken])
         found.append(np.hstack([mesh.vertices[:, 2:], mesh.attributes])[is_taken])
     unique, first = np.unique(np.concatenate(cells), return_index=True)  # two tiles have a border

@@ -133,6 +133,22 @@ def test_the_bar_keeps_its_room_through_long_work(qgis, width, seconds):
     assert np.abs(np.array(places[::10]) - np.arange(seconds) / seconds).max() < 0.3
 
 
+@pytest.mark.parametrize(("width", "seconds"), [(0.1, 20), (0.65, 60)])
+def test_the_bar_moves_every_second_while_the_work_says_nothing(qgis, width, seconds):
+    """It stood for 1.5 s after eight of triangulating two million points."""
+    from plugin.qgis_io.background import LEAST, Bar
+
+    bar = Bar(0.0, width)
+    seen, moments = 0.0, [0.0]
+    for tenth in range(10 * seconds):
+        place = width * bar.at(0.0, tenth / 10)
+        if place - seen >= LEAST:
+            seen = place
+            moments.append(tenth / 10)
+    assert np.diff(moments).max() <= 1.0
+    assert moments[-1] > seconds - 1
+
+
 def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
     """A step that asks nobody for long, as a triangulation does."""
     import threading

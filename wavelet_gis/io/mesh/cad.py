@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import os
 import re
+from collections.abc import Iterator
+from typing import Any
 from xml.sax.saxutils import quoteattr  # nosec B406: nothing is parsed, only written
 
 import numpy as np
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 
 import wavelet_core
 from wavelet_core import MissingDependencyError, TriangleMesh
+from wavelet_core.progress import report_share
 from wavelet_gis.errors import OutputFileError
 from wavelet_gis.io.read_back import recorded_stream, write_text
 
@@ -19,6 +22,11 @@ __all__ = ["metres_in_horizontal_unit", "write_dxf", "write_glb", "write_landxml
 
 #: glTF's vertical axis is y: x stays, y becomes -z, z becomes y.
 _Z_UP_TO_Y_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], dtype=float)
+
+#: Pieces of text that ezdxf writes for each face, about.
+_DXF_WRITES_A_FACE = 10
+#: Rows, or pieces of text, between two reports.
+_ROWS_BETWEEN_REPORTS = 1 << 13
 
 
 def write_stl(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
@@ -91,10 +99,10 @@ def write_landxml(path: str | os.PathLike[str], mesh: TriangleMesh, wkt: str | N
             stream.write(f"<CoordinateSystem ogcWktCode={quoteattr(wkt)}/>\n")
         stream.write(f"<Application name={software}/>\n")
         stream.write('<Surfaces><Surface name="terrain"><Definition surfType="TIN">\n<Pnts>\n')
-        for number, (x, y, z) in enumerate(mesh.vertices.tolist(), 1):
-            stream.write(f'<P id="{number}">{y:.15g} {x:.15g} {z:.15g}</P>\n')
+        for number, (x, y, z) in _reported(mesh.vertices, 0.0, 0.5):
+            stream.write(f'<P id="{number + 1}">{y:.15g} {x:.15g} {z:.15g}</P>\n')
         stream.write("</Pnts>\n<Faces>\n")
-        for a, b, c in (mesh.faces + 1).tolist():
+        for _, (a, b, c) in _reported(mesh.faces + 1, 0.5, 1.0):
             stream.write(f"<F>{a} {b} {c}</F>\n")
         stream.write("</Faces>\n</Definition></Surface></Surfaces>\n</LandXML>\n")
 
@@ -181,13 +189,40 @@ def write_dxf(path: str | os.PathLike[str], mesh: TriangleMesh) -> None:
         document = ezdxf.filemanagement.new("R2010")
         document.layers.add("TERRAIN")
         space = document.modelspace()
-        for a, b, c in mesh.vertices[mesh.faces].tolist():
+        for _, (a, b, c) in _reported(mesh.vertices[mesh.faces], 0.0, 0.5):
             space.add_3dface([a, b, c, c], dxfattribs={"layer": "TERRAIN"})
-        text = io.StringIO(newline="\n")
+        text = _ReportedText(_DXF_WRITES_A_FACE * mesh.n_faces)
         document.write(text)
     finally:
         options.write_fixed_meta_data_for_testing = is_fixed
     write_text(path, text.getvalue())
+
+
+def _reported(rows: NDArray[Any], start: float, stop: float) -> Iterator[tuple[int, Any]]:
+    """Yield rows with their numbers, from 0, and report from time to time how far it is."""
+    for first in range(0, len(rows), _ROWS_BETWEEN_REPORTS):
+        report_share(start + (stop - start) * first / len(rows))
+        yield from enumerate(rows[first : first + _ROWS_BETWEEN_REPORTS].tolist(), first)
+
+
+class _ReportedText(io.StringIO):
+    """Text that reports, while it is written, how much of its second half is there.
+
+    Parameters
+    ----------
+    n_writes : int
+        That will be made of it, or some.
+    """
+
+    def __init__(self, n_writes: int) -> None:
+        super().__init__(newline="\n")
+        self._n_writes, self._done = max(n_writes, 1), 0
+
+    def write(self, text: str) -> int:
+        self._done += 1
+        if self._done % _ROWS_BETWEEN_REPORTS == 0:
+            report_share(0.5 + 0.5 * min(self._done / self._n_writes, 1.0))
+        return super().write(text)
 
 
 def _local_origin(mesh: TriangleMesh) -> NDArray[np.float64]:

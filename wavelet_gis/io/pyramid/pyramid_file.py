@@ -62,6 +62,7 @@ from wavelet_gis.io.pyramid.pyramid_parts import (
 from wavelet_gis.io.pyramid.source_parts import check_source
 from wavelet_gis.io.read_back import read_back
 from wavelet_gis.model.geo_pyramid import GeoPyramid
+from wavelet_gis.model.origin import Origin
 
 __all__ = [
     "FORMATS_READ",
@@ -264,12 +265,14 @@ def _read_back(
         with open_untrusted(path) as connection, _pool() as pool:
             contents = Contents(connection)
             size = os.path.getsize(path)
-            pyramid_from_parts(
+            read = pyramid_from_parts(
                 contents,
                 WrittenArrays(connection, pool, contents.entries, size, arrays, verified),
                 geo.pyramid,
                 lambda share: count("levels", share),
             )
+        if geo.origin.grid is not None and not _has_same_parts(read.origin, geo.origin):
+            raise PyramidError("the numbers of the raster come back as others.")
         report(progress, 1.0, _CANCELLED)
     except Cancelled:
         raise
@@ -277,6 +280,15 @@ def _read_back(
         raise OutputFileError(
             f"the reader of pyramid files does not take it: {str(error).rstrip('.')}"
         ) from error
+
+
+def _has_same_parts(origin: Origin, other: Origin) -> bool:
+    (fields, arrays), (others, other_arrays) = origin.to_parts(), other.to_parts()
+    return (
+        fields == others
+        and arrays.keys() == other_arrays.keys()
+        and all(arrays[name].tobytes() == other_arrays[name].tobytes() for name in arrays)
+    )
 
 
 @contextmanager

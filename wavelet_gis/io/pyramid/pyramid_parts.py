@@ -152,12 +152,14 @@ def pyramid_from_parts(
     metadata = contents.metadata
     fields = metadata.fields("source")
     check_source(fields)
-    origin = origin_from_parts(fields, source_arrays(fields, arrays))
+    of_source = part_of(progress, 0.0, _SHARE_OF_SOURCE)
+    origin = origin_from_parts(fields, source_arrays(fields, arrays, of_source))
     frame = LocalFrame.from_dict(metadata.fields("frame"))
+    of_rest = part_of(progress, _SHARE_OF_SOURCE, 1.0)
     if "record" in metadata:
-        pyramid = pyramid_from_record(contents, arrays, origin, frame, written, progress)
+        pyramid = pyramid_from_record(contents, arrays, origin, frame, written, of_rest)
     else:
-        pyramid = pyramid_from_lists(contents, arrays, origin, frame, progress)
+        pyramid = pyramid_from_lists(contents, arrays, origin, frame, of_rest)
     n_vertices = pyramid.n_vertices(pyramid.n_levels)
     if origin.n_vertices not in (None, n_vertices):
         raise PyramidError(

@@ -53,21 +53,21 @@ def pyramid_from_record(
         fields, places = contents.metadata.fields("record"), origin.points.kept_places
         of_faces = part_of(progress, 0.0, _SHARE_OF_FACES)
         faces = faces_from_parts(fields, arrays, places, of_faces)
-    mesh = origin.kept_mesh(frame, faces)
-    if mesh is None:
-        raise PyramidError(NO_INPUT)
     design = _design_from(described, len(described.texts("channels")))
     record = record_from_parts(contents.metadata.fields("record"), arrays, len(design["channels"]))
     n_steps = sum(len(part.answers.levels) for part in record.parts)
     if n_steps != described.integer("n_levels"):
         raise PyramidError(f"{n_steps} steps for another number of levels; the file is damaged.")
+    locked = locked_from(described, arrays)
+    if written is not None:  # its mesh is compared by what it follows from
+        return written
+    mesh = origin.kept_mesh(frame, faces)
+    if mesh is None:
+        raise PyramidError(NO_INPUT)
     if mesh.attribute_names != design["channels"][1:]:
         raise PyramidError("channels that are not those of the source; the file is damaged.")
-    locked = locked_from(described, arrays)
     if locked is not None and locked.shape != (mesh.n_vertices,):
         raise PyramidError("a locked mask of another length; the file is damaged.")
-    if written is not None:
-        return written
     begins = 0.0 if faces is None else _SHARE_OF_FACES
     if origin.grid is None:
         require_surface(mesh, part_of(progress, begins, _SHARE_OF_SURFACE))

@@ -58,7 +58,11 @@ def shrink_source(
 
 
 def source_arrays(
-    source: Fields, arrays: StoredArrays, *, with_numbers: bool = True
+    source: Fields,
+    arrays: StoredArrays,
+    progress: Progress | None = None,
+    *,
+    with_numbers: bool = True,
 ) -> dict[str, NDArray[Any]]:
     """Return the arrays of the source, a raster's numbers out of their residuals."""
     if "divisor" not in source:
@@ -75,7 +79,7 @@ def source_arrays(
         if len(packed) != -(-n_rows * n_columns // 8):
             raise source.fault("shape is not that of its mask")
         valid = np.unpackbits(packed, count=n_rows * n_columns).reshape(n_rows, n_columns)
-        integers = decode_grid(residuals, valid.astype(bool))
+        integers = decode_grid(residuals, valid.astype(bool), progress)
         divisor = source.integer("divisor", 0, max(DIVISORS))
         dtype = number_dtype(source.text("dtype"))
         palette = arrays.get(_PALETTE, dtype.str, 1) if PALETTE in source else None

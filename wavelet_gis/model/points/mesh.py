@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import TriangleMesh
+from wavelet_core._validate import distinct
 from wavelet_core.mesh.gaps import PointGaps, faces_within, gaps_of
 from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
 from wavelet_gis.crs.frame import LocalFrame
@@ -163,7 +164,7 @@ def _without_gaps(
         n_gone=len(faces) - len(within),
         n_faces=len(faces),
         length=length,
-        n_alone=len(plan) - len(np.unique(within)),
+        n_alone=len(plan) - len(distinct(within)),
     )
     return within
 

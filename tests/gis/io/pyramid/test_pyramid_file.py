@@ -11,7 +11,7 @@ from gis import samples
 from gis.samples import write_tif
 from helpers_meshes import random_delaunay
 
-from wavelet_core import Cancelled, TriangleMesh, analyse
+from wavelet_core import Cancelled, TriangleMesh, WaveletError, analyse
 from wavelet_core.synthetic import hills
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid.pyramid_file import (
@@ -201,6 +201,21 @@ def test_progress_rises_and_stops(raster_record, tmp_path):
     assert seen[-1] == pytest.approx(1)
     with pytest.raises(Cancelled):
         write_pyramid(tmp_path / "b.gpkg", raster_record, lambda fraction: fraction < 0.5)
+
+
+def test_numbers_of_a_raster_that_do_not_come_back_are_not_kept(
+    raster_record, tmp_path, monkeypatch
+):
+    """Reading back compared the arrays, not what follows from them."""
+    from wavelet_gis.io.pyramid import source_parts
+
+    def wrong(*arguments):
+        return decode_grid(*arguments) + 1
+
+    decode_grid = source_parts.decode_grid
+    monkeypatch.setattr(source_parts, "decode_grid", wrong)
+    with pytest.raises(WaveletError, match="come back as others"):
+        write_pyramid(tmp_path / "a.gpkg", raster_record)
 
 
 LIGHT = [

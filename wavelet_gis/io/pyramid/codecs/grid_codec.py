@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import Progress
+from wavelet_core._validate import distinct
 from wavelet_core.errors import PyramidError
 from wavelet_core.progress import report
 
@@ -103,7 +104,7 @@ def integers_of(values: NDArray[Any]) -> Numbers:
         if values_of(integers, dtype, divisor).tobytes() == values.tobytes():
             return Numbers(integers, divisor)
     bits = _mirrored(values.view(f"<i{dtype.itemsize}").astype(np.int64), dtype.itemsize)
-    different = np.unique(bits)
+    different = distinct(bits)
     if len(different) > MOST_IN_PALETTE * len(bits):
         return Numbers(bits, 0)
     return Numbers(np.searchsorted(different, bits), 0, values_of(different, dtype, 0))
@@ -209,8 +210,18 @@ def _as_bytes(residuals: NDArray[np.uint64], classes: tuple[int, ...]) -> Residu
     return Residuals(numbers, residuals[is_beyond], classes)
 
 
-def decode_grid(residuals: Residuals, valid: NDArray[np.bool_]) -> NDArray[np.int64]:
+def decode_grid(
+    residuals: Residuals, valid: NDArray[np.bool_], progress: Progress | None = None
+) -> NDArray[np.int64]:
     """Return the integers of the valid cells from their residuals; see `encode_grid`.
+
+    Parameters
+    ----------
+    residuals : Residuals
+        Of any origin.
+    valid : (n_rows, n_columns) bool
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
@@ -267,7 +278,7 @@ def decode_grid(residuals: Residuals, valid: NDArray[np.bool_]) -> NDArray[np.in
             return predicted + residual
 
     grid = np.zeros(valid.shape, dtype=np.int64)
-    _walk(grid, valid, put)
+    _walk(grid, valid, put, progress)
     return grid[valid]
 
 
@@ -281,8 +292,14 @@ def _require(holds: bool) -> None:
 _Exchange = Callable[[NDArray[np.int64], NDArray[np.uint16], NDArray[np.int64]], NDArray[np.int64]]
 
 
-def _walk(grid: NDArray[np.int64], valid: NDArray[np.bool_], exchange: _Exchange) -> None:
+def _walk(
+    grid: NDArray[np.int64],
+    valid: NDArray[np.bool_],
+    exchange: _Exchange,
+    progress: Progress | None = None,
+) -> None:
     """Visit all valid cells of a grid, pass by pass; it is filled, or read, by ``exchange``."""
+    n_known = 0
     known = np.zeros(valid.shape, dtype=bool)
     for cells in _passes(valid.shape):
         window = np.ix_(cells.rows, cells.columns)
@@ -292,6 +309,8 @@ def _walk(grid: NDArray[np.int64], valid: NDArray[np.bool_], exchange: _Exchange
         now[here] = exchange(predicted[here], relief[here], now[here])
         grid[window] = now
         known[window] = here
+        n_known += here.size
+        report(progress, n_known / valid.size)
 
 
 def _passes(shape: tuple[int, int]) -> Iterator[_Pass]:
