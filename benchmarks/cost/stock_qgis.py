@@ -164,6 +164,19 @@ CASES: dict[str, tuple[str, dict[str, object]]] = {
     "Reconstruct LAS": ("reconstruct", {"INPUT": "{cloud}", "POINT_CLOUD": "{out}.las"}),
     "Reconstruct LAZ": ("reconstruct", {"INPUT": "{cloud}", "POINT_CLOUD": "{out}.laz"}),
     "Terrain for the web": ("webterrain", {"INPUT": "{pyramid}", "OUTPUT": "{out}_tiles"}),
+    "Tile DEM": ("tileterrain", {"RASTERS": "{dem}", "TILE": 500, "OUTPUT": "{out}_set"}),
+    "Tile point cloud, LAS": (
+        "tileterrain",
+        {"CLOUDS": "{las}", "TILE": 500.0, "OUTPUT": "{out}_set"},
+    ),
+    "Extract from tiles": (
+        "extractfromtiles",
+        {"INPUT": "{tiles}/index.gpkg", "LEVEL": 20, "TIN": "memory:", "RASTER": "{out}.tif"},
+    ),
+    "Extract from tiles by largest error": (
+        "extractfromtiles",
+        {"INPUT": "{tiles}/index.gpkg", "MAX_ERROR": 0.5, "TIN": "memory:"},
+    ),
     "Filter levels by gains": (
         "filterlevels",
         {"INPUT": "{pyramid}", "GAINS": [3, 0.0], "DEM": "{out}.tif", "DIFFERENCE": "{out}_d.tif"},
@@ -225,12 +238,14 @@ NAMES = {
     "training": "training.gpkg",
     "pyramid": "pyramid.gpkg",
     "cloud": "cloud_pyramid.gpkg",
+    "tiles": "tiles",
 }
 #: Run first, with all packages, to make the inputs of the others.
 INPUTS: dict[str, tuple[str, dict[str, object]]] = {
     "pyramid": ("analysedem", {"INPUT": "{dem}", "OUTPUT": "{pyramid}"}),
     "cloud": ("analysepointcloud", {"INPUT": "{las}", "OUTPUT": "{cloud}"}),
     "laz": ("reconstruct", {"INPUT": "{cloud}", "POINT_CLOUD": "{laz}"}),
+    "tiles": ("tileterrain", {"OUTPUT": "{tiles}", "RASTERS": "{dem}", "TILE": 500}),
 }
 
 

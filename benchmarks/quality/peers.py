@@ -2,7 +2,7 @@
 
 usage: python benchmarks/quality/peers.py DEM [DEM ...] [--keep 0.25,0.1,0.02,0.005] [--size 1025]
        [--peers ours,vtk,...] [--output peers.jsonl] [--plot peers.png]
-       python benchmarks/quality/peers.py --table peers.jsonl [--plot peers.png]
+       python benchmarks/quality/peers.py --table peers.jsonl [--plot peers.png] [--markdown]
 
 Each measurement has a process of its own: one call on a 65 x 65 corner to load and compile, then
 the call that is measured. Errors are vertical, at every node of the DEM, by a rasteriser that
@@ -28,7 +28,7 @@ from numba import njit
 from scipy.ndimage import distance_transform_edt
 
 CELL = 30.0
-LIMIT_SECONDS = 180
+LIMIT_SECONDS = 180  # of processor time
 
 
 def elevations(path: str, size: int) -> np.ndarray:
@@ -235,11 +235,18 @@ PEERS: dict[str, Callable] = {
 }
 
 
+#: A result with so many times the vertices that were asked for is marked, and never the best.
+MOST_MORE = 1.05
+
+#: What the picture calls them.
+LABELS = {"ours refined": "ours, the default", "ours fitted": "ours, --no-refine"}
+
+
 # -- what came out --------------------------------------------------------------------------------
 
 
 # x, y in cells; surface and covered (n_rows, n_columns): filled. Counts flipped and flat faces.
-@njit
+@njit(cache=True)
 def lay_faces(x, y, z, faces, surface, covered, inside):
     n_flipped, n_flat = 0, 0
     for f in range(faces.shape[0]):
@@ -331,6 +338,10 @@ def measure(peer: str, dem: str, size: int, keep: float) -> dict[str, object]:
     return figures | judge(z, *result)
 
 
+def _limit_time() -> None:
+    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_SECONDS, LIMIT_SECONDS))
+
+
 def run_all(arguments: argparse.Namespace) -> None:
     """Measure each peer on each DEM in a process of its own; append a line of JSON for each."""
     for dem in arguments.dems:
@@ -338,14 +349,11 @@ def run_all(arguments: argparse.Namespace) -> None:
             for peer in arguments.peers:
                 task = [sys.executable, __file__, "--one", json.dumps([peer, dem, keep])]
                 task += ["--size", str(arguments.size)]
-                try:
-                    done = subprocess.run(
-                        task, capture_output=True, text=True, timeout=LIMIT_SECONDS, check=False
-                    )
-                    lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
-                    why = (done.stderr.strip().splitlines() or ["no answer"])[-1]
-                except subprocess.TimeoutExpired:
-                    lines, why = [], f"no answer in {LIMIT_SECONDS} s"
+                done = subprocess.run(
+                    task, capture_output=True, text=True, check=False, preexec_fn=_limit_time
+                )
+                lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
+                why = (done.stderr.strip().splitlines() or [f"no answer in {LIMIT_SECONDS} s"])[-1]
                 if not lines:
                     print(f"{peer} on {Path(dem).name} at {keep:.2%}: {why}", file=sys.stderr)
                     continue
@@ -377,42 +385,100 @@ def table(path: str) -> list[dict]:
     return results
 
 
+def of_dem(results: list[dict], dem: str, peer: str) -> list[dict]:
+    """Return the results of a peer on a DEM, the smallest TIN first."""
+    mine = [r for r in results if r["dem"] == dem and r["peer"] == peer and r["rmse"] > 0]
+    return sorted(mine, key=lambda r: r["n_vertices"])
+
+
+def to_error(results: list[dict], rmse: float) -> tuple[float, float]:
+    """Return vertices and processor seconds to an error, between results by logarithms; or NaN."""
+    ordered = sorted(results, key=lambda r: r["rmse"])
+    if len(ordered) < 2 or not ordered[0]["rmse"] <= rmse <= ordered[-1]["rmse"]:
+        return np.nan, np.nan
+    errors = np.log([r["rmse"] for r in ordered])
+    figures = (np.log([r[name] for r in ordered]) for name in ("n_vertices", "cpu_seconds"))
+    n_vertices, seconds = (float(np.exp(np.interp(np.log(rmse), errors, f))) for f in figures)
+    return n_vertices, seconds
+
+
+def markdown(results: list[dict]) -> None:
+    """Print RMSE and processor time of all, and what the first of ours takes to their errors."""
+    peers = [peer for peer in PEERS if any(r["peer"] == peer for r in results)]
+    dems = sorted({r["dem"] for r in results})
+    first = next(peer for peer in ("ours refined", *peers) if peer in peers)
+    print("| DEM | kept | " + " | ".join(peers) + " |\n" + "|---" * (len(peers) + 2) + "|")
+    for dem in dems:
+        for keep in sorted({r["keep"] for r in results if r["dem"] == dem}, reverse=True):
+            here = {r["peer"]: r for r in results if r["dem"] == dem and r["keep"] == keep}
+            best = min(r["rmse"] for r in here.values() if _times_asked(r) <= MOST_MORE)
+            cells = [_cell(here[peer], best) if peer in here else "–" for peer in peers]
+            print(f"| {dem} | {100 * keep:g} % | " + " | ".join(cells) + " |")
+    print(f"\n{first}, of the vertices and of the processor time of each, to its error:\n")
+    for dem in dems:
+        for figures in (r for p in peers if p != first for r in of_dem(results, dem, p)):
+            n, seconds = to_error(of_dem(results, dem, first), figures["rmse"])
+            shares = n / figures["n_vertices"], seconds / max(figures["cpu_seconds"], 0.01)
+            if np.isfinite(n):
+                name = f"{dem} {figures['keep']:.2%} {figures['peer']}"
+                print(f"{name}: {shares[0]:.2f}, {shares[1]:.2f}")
+
+
+def _times_asked(figures: dict) -> float:
+    return figures["n_vertices"] / (figures["keep"] * figures["n_nodes"])
+
+
+def _cell(figures: dict, best: float) -> str:
+    rmse = f"{figures['rmse']:.3g}"
+    more = _times_asked(figures)
+    times = f" (×{more:.1f})" if more > MOST_MORE else ""
+    bold = f"**{rmse}**" if figures["rmse"] == best else rmse
+    return f"{bold} / {figures['cpu_seconds']:.2g}{times}"
+
+
 def plot(results: list[dict], path: str) -> None:
-    """Draw error against vertices and against time, one column a DEM."""
+    """Draw error against vertices and against processor time, one column a DEM."""
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import pyplot
+    from matplotlib.ticker import NullFormatter
 
     dems = sorted({r["dem"] for r in results})
-    size = (4.2 * len(dems), 7.5)
+    size = (5.2 * len(dems), 8.4)
     figure, axes = pyplot.subplots(2, len(dems), figsize=size, squeeze=False, layout="constrained")
-    colours = dict(zip(PEERS, pyplot.get_cmap("tab20").colors, strict=False))
-    labelled: set[str] = set()
+    peers = [peer for peer in PEERS if any(r["peer"] == peer for r in results)]
+    others = [peer for peer in peers if not peer.startswith("ours")]
+    grey = pyplot.get_cmap("tab10").colors
+    colours = dict(zip(others, grey[1:3] + grey[4:], strict=False))
+    colours |= dict(
+        zip([p for p in peers if p not in others], ("#b91c1c", "#111827"), strict=False)
+    )
     for column, dem in enumerate(dems):
-        for peer in PEERS:
-            mine = [r for r in results if r["dem"] == dem and r["peer"] == peer and r["rmse"] > 0]
-            if not mine:
-                continue
-            mine.sort(key=lambda r: r["n_vertices"])
+        for peer in peers:
+            mine = of_dem(results, dem, peer)
+            is_ours = peer not in others
             style = {
-                "color": colours[peer],
-                "marker": "o",
-                "ms": 3.5,
-                "lw": 2.4 if peer.startswith("ours") else 1.1,
-                "label": None if peer in labelled else peer,
+                "color": colours.get(peer, "#9ca3af"),
+                "marker": "o" if is_ours else "s",
+                "ms": 5 if is_ours else 3.5,
+                "lw": 2.4 if is_ours else 1.1,
+                "zorder": 3 if is_ours else 2,
+                "label": LABELS.get(peer, peer) if column == 0 else None,
             }
-            labelled.add(peer)
             rmse = [r["rmse"] for r in mine]
             axes[0, column].loglog([r["n_vertices"] for r in mine], rmse, **style)
-            axes[1, column].loglog([r["seconds"] for r in mine], rmse, **style | {"label": None})
-        axes[0, column].set_title(dem, fontsize=9)
-        axes[0, column].set_xlabel("vertices (or coefficients)")
-        axes[1, column].set_xlabel("seconds")
-    for line in axes:
-        line[0].set_ylabel("RMSE at all nodes")
-    figure.legend(loc="outside lower center", ncols=4, fontsize=8)
-    figure.savefig(path, dpi=110)
+            style["label"] = None
+            axes[1, column].loglog([r["cpu_seconds"] for r in mine], rmse, **style)
+        axes[0, column].set_title(f"{dem}, {mine[0]['n_nodes']:,} nodes", fontsize=10)
+        axes[0, column].set_xlabel("vertices")
+        axes[1, column].set_xlabel("processor time (s)")
+    for ax in axes.flat:
+        ax.grid(which="both", color="#e5e7eb", linewidth=0.5)
+        ax.set_ylabel("RMSE at all nodes (m)")
+        ax.xaxis.set_minor_formatter(NullFormatter())
+    figure.legend(loc="outside lower center", ncols=3, fontsize=9)
+    figure.savefig(path, dpi=90)
 
 
 def main() -> None:
@@ -425,6 +491,7 @@ def main() -> None:
     parser.add_argument("--output", default="peers.jsonl")
     parser.add_argument("--table")
     parser.add_argument("--plot")
+    parser.add_argument("--markdown", action="store_true")
     parser.add_argument("--one", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.one:
@@ -434,6 +501,8 @@ def main() -> None:
     if not arguments.table:
         run_all(arguments)
     results = table(arguments.table or arguments.output)
+    if arguments.markdown:
+        markdown(results)
     if arguments.plot:
         plot(results, arguments.plot)
 

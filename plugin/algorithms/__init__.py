@@ -12,6 +12,7 @@ from .cluster_details import ClusterDetails
 from .contours import Contours
 from .detail_layers import DetailLayers
 from .difference import Difference
+from .extract_from_tiles import ExtractFromTiles
 from .extract_level import ExtractLevel
 from .filter_levels import FilterLevels
 from .mesh_quality import MeshQuality
@@ -22,6 +23,7 @@ from .shape_of_level import ShapeOfLevel
 from .simplify_dem import SimplifyDem
 from .simplify_point_cloud import SimplifyPointCloud
 from .thin_point_cloud import ThinPointCloud
+from .tile_terrain import TileTerrain
 from .web_terrain import WebTerrain
 
 #: In the order of the toolbox's groups.
@@ -29,11 +31,13 @@ ALGORITHMS = (
     AnalyseDem,
     AnalysePointCloud,
     AnalyseTin,
+    TileTerrain,
     SimplifyDem,
     SimplifyPointCloud,
     ThinPointCloud,
     ClassifyGround,
     ExtractLevel,
+    ExtractFromTiles,
     Reconstruct,
     WebTerrain,
     Contours,

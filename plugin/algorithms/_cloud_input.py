@@ -46,6 +46,28 @@ ATTRIBUTES = ("classification", "hag", "intensity", "rgb", "return_number", "num
 MOST_NAMED = 12
 
 
+def add_kept_parameters(algorithm: TerrainWaveletsAlgorithm) -> None:
+    """Declare which points are part of the surface."""
+    algorithm.add(
+        QgsProcessingParameterBoolean("KEEP_NOISE", tr("Keep points of noise"), False),
+        tr(
+            "Let points of the classes 7 and 18 be part of the surface. Otherwise they are "
+            "only carried, and the reconstructed file has them."
+        ),
+        advanced=True,
+    )
+    algorithm.add(
+        QgsProcessingParameterBoolean("KEEP_WITHHELD", tr("Keep withheld points"), False),
+        tr("The same for points with the withheld flag."),
+        advanced=True,
+    )
+    algorithm.add(
+        choice("DUPLICATES", tr("Height of points at one place"), duplicate_rules()),
+        tr("Which height points have that share x and y; each of them comes back."),
+        advanced=True,
+    )
+
+
 class CloudInput(TerrainWaveletsAlgorithm):
     """Base of the algorithms that start from a LAS, LAZ or COPC file, or a layer of one."""
 
@@ -126,24 +148,7 @@ class CloudInput(TerrainWaveletsAlgorithm):
         self.add_crs_parameter()
 
     def _add_surface_parameters(self) -> None:
-        self.add(
-            QgsProcessingParameterBoolean("KEEP_NOISE", tr("Keep points of noise"), False),
-            tr(
-                "Let points of the classes 7 and 18 be part of the surface. Otherwise they are "
-                "only carried, and the reconstructed file has them."
-            ),
-            advanced=True,
-        )
-        self.add(
-            QgsProcessingParameterBoolean("KEEP_WITHHELD", tr("Keep withheld points"), False),
-            tr("The same for points with the withheld flag."),
-            advanced=True,
-        )
-        self.add(
-            choice("DUPLICATES", tr("Height of points at one place"), duplicate_rules()),
-            tr("Which height points have that share x and y; each of them comes back."),
-            advanced=True,
-        )
+        add_kept_parameters(self)
         self.add(
             QgsProcessingParameterNumber(
                 "MAX_EDGE", tr("Longest edge"), REAL_NUMBER, None, optional=True, minValue=0.0

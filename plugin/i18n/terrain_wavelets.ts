@@ -404,6 +404,71 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>A tile of a DEM has a whole number of cells along its side.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>DEMs</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Give DEMs or point clouds, one of the two.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Instead of the CRS in the files, or where they have none.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Instead: LAS, LAZ or COPC files of one point format, an &lt;i&gt;ept.json&lt;/i&gt;, or a folder of them. Each is read once, a million points at a time.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Of the DEMs: the band with the elevations.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Of the point clouds: names of dimensions that are transformed along with the elevation, separated by commas, such as intensity. All others come back, too.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Of the point clouds: only points of these ASPRS classes, separated by commas. Empty for all points.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>One raster of any size, or several with cells in one grid; where they overlap, the first that has data counts. Layers of files on this machine, read as the files are.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Or point clouds</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>{}: its CRS is {}, that of {} is {}; reproject it.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>{}: its properties change which values are nodata, and tiles take the file as it is; export the layer, or take that change back.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>{}: tiles are made of raster files on this machine, and this layer is none; export it as one.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/analyse_dem.py"/>
     <source>Analyse DEM</source>
     <translation type="unfinished"></translation>
@@ -1209,6 +1274,181 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>A region of a tiled pyramid at any level or accuracy, as TIN, raster or mesh</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Extent</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Extract from tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Give a level or the largest error, not both.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Give an extent or polygons, not both.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Gives a region of what &lt;i&gt;Tile large DEM or point clouds&lt;/i&gt; made, at a level or as coarse as a largest error allows, without cracks between tiles. Only the tiles that it needs are read. Triangles that reach into the region are given whole.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>In the unit of the CRS. Empty for the mean spacing of the vertices.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Index of the tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Index of tiles (*.gpkg)</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Instead of a level: fine only where it has to be for no input point of the region to be farther above or below the surface, in the unit of elevation.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Instead: the region is that of all of them. This needs shapely.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Largest error</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Level, or the finest one in the region</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Levels: 0 (coarsest) to {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Mesh of the region</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>No output is chosen; choose a TIN, vertices, a raster or a mesh.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Number of triangles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Number of vertices</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Of the whole: 0 is the coarsest; the number of levels is the input itself.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Or polygons</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Points with elevation and attributes; &lt;i&gt;vertex_id&lt;/i&gt; counts the input's cells.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Raster of the region</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Reading the index</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Reading the tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>TIN of the region</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>The TIN evaluated at the cell centres, 32-bit floats.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>The file &lt;i&gt;index.gpkg&lt;/i&gt; in the folder of the tiles.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>The region, in any CRS. Empty, and no polygons either, for all.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>There is no polygon in the layer; choose another.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Tiles and groups that were read</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Triangles with mean elevation and slope (degrees).</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Vertices of the region</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>of the surface</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>tiles,index,region,clip,extent,tin,mesh,2dm,raster,level of detail,lod,large,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>{}: this is no index of tiles; choose index.gpkg in their folder.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>0 is the coarsest; the number of levels is the input itself. In the dialog, click a row of the table of levels.</source>
     <translation type="unfinished"></translation>
@@ -1240,32 +1480,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Largest error</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Level, or the finer one of two</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Mesh of the level</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>No output is chosen; choose a TIN, vertices, a raster or a mesh.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Number of triangles</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Number of vertices</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -1310,27 +1530,12 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>The TIN evaluated at the cell centres, 32-bit floats.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Triangles with mean elevation and slope (degrees).</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Vertices of the level</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>With the largest error: how often edges are turned, vertices moved, and taken out where it allows. Vertices are then points of the input.</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>of the surface</source>
     <translation type="unfinished"></translation>
   </message>
   <message>
@@ -2219,6 +2424,116 @@
     <translation type="unfinished"></translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Add the index to the map</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Folder of tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Making the tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Most levels of a tile</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Number of levels of the whole</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Number of tiles</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Of DEMs in cells, 1024 if empty; a tile of so many needs some 1.7 GB of memory. Of point clouds in the unit of x and y; if empty, such that a tile has about a million points, which need about 1 GB.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Of each tile, and of each group of four. Empty for 64.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Opens the footprints of the tiles, with their sizes and errors.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Reading the headers</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Set aside: stage {}, row {}, column {}: {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Side of a tile</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Terrain beyond memory to a tiled pyramid: a file for each tile, and an index</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tile large DEM or point clouds</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tile {} of {}: stage {}, row {}, column {}</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tiles and groups made in this run</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tiles and groups that were set aside</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tiles and groups that were there before</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Turns a DEM or point clouds that need not fit into memory into a pyramid of tiles. Each tile is analysed by itself, its border locked; then two by two tiles become one, up to a single one for the whole. At any level the tiles together are one TIN, without cracks. &lt;i&gt;Extract from tiles&lt;/i&gt; gives any region at any level. A run that was cancelled, or stopped in any other way, goes on where it was when it is started again with the same parameters.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>With &lt;i&gt;index.gpkg&lt;/i&gt; and the tiles. Of an earlier run with the same parameters what is whole is kept; tiles of another input are replaced.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>tile,tiles,large,big,huge,out of core,mosaic,dem,las,laz,copc,ept,lidar,index,pyramid,wavelet</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>{} tiles, {} with groups, in {} stages</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source> zoom   tiles  vertices  largest error (m)</source>
     <translation type="unfinished"></translation>
@@ -2240,11 +2555,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>
-    <source>Folder of tiles</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source>For light and shade.</source>
     <translation type="unfinished"></translation>
   </message>
@@ -2261,11 +2571,6 @@
   <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source>Largest error of the finest zoom, in metres</source>
-    <translation type="unfinished"></translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/web_terrain.py"/>
-    <source>Number of tiles</source>
     <translation type="unfinished"></translation>
   </message>
   <message>

@@ -404,6 +404,71 @@
     <translation>Zonen anderer Größe für einen Löser</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>A tile of a DEM has a whole number of cells along its side.</source>
+    <translation>Die Seite einer Kachel eines DGM hat eine ganze Zahl von Zellen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>DEMs</source>
+    <translation>DGM</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Give DEMs or point clouds, one of the two.</source>
+    <translation>Geben Sie DGM oder Punktwolken an, eines von beiden.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Instead of the CRS in the files, or where they have none.</source>
+    <translation>Statt des KBS in den Dateien, oder wo sie keines haben.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Instead: LAS, LAZ or COPC files of one point format, an &lt;i&gt;ept.json&lt;/i&gt;, or a folder of them. Each is read once, a million points at a time.</source>
+    <translation>Stattdessen: LAS-, LAZ- oder COPC-Dateien eines Punktformats, eine &lt;i&gt;ept.json&lt;/i&gt;, oder ein Ordner davon. Jede wird einmal gelesen, eine Million Punkte auf einmal.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Of the DEMs: the band with the elevations.</source>
+    <translation>Der DGM: das Band mit den Höhen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Of the point clouds: names of dimensions that are transformed along with the elevation, separated by commas, such as intensity. All others come back, too.</source>
+    <translation>Der Punktwolken: Namen von Dimensionen, die mit der Höhe transformiert werden, mit Kommas dazwischen, etwa intensity. Alle anderen kommen auch zurück.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Of the point clouds: only points of these ASPRS classes, separated by commas. Empty for all points.</source>
+    <translation>Der Punktwolken: nur Punkte dieser ASPRS-Klassen, mit Kommas dazwischen. Leer für alle Punkte.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>One raster of any size, or several with cells in one grid; where they overlap, the first that has data counts. Layers of files on this machine, read as the files are.</source>
+    <translation>Ein Raster beliebiger Größe, oder mehrere, deren Zellen in einem Gitter liegen; wo sie sich überlappen, zählt das erste, das Daten hat. Layer von Dateien auf diesem Rechner, gelesen, wie die Dateien sind.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>Or point clouds</source>
+    <translation>Oder Punktwolken</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>{}: its CRS is {}, that of {} is {}; reproject it.</source>
+    <translation>{}: sein KBS ist {}, das von {} ist {}; projizieren Sie es um.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>{}: its properties change which values are nodata, and tiles take the file as it is; export the layer, or take that change back.</source>
+    <translation>{}: seine Eigenschaften ändern, welche Werte NoData sind, und Kacheln nehmen die Datei, wie sie ist; exportieren Sie den Layer, oder nehmen Sie die Änderung zurück.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/_tiles_input.py"/>
+    <source>{}: tiles are made of raster files on this machine, and this layer is none; export it as one.</source>
+    <translation>{}: Kacheln werden aus Rasterdateien auf diesem Rechner gemacht, und dieser Layer ist keine; exportieren Sie ihn als eine.</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/analyse_dem.py"/>
     <source>Analyse DEM</source>
     <translation>DGM analysieren</translation>
@@ -1209,6 +1274,181 @@
     <translation>Differenz,DoD,Höhendifferenz,Änderung,Fehler,Residuum,Vergleich,Stufe,Pyramide,Wavelet</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>A region of a tiled pyramid at any level or accuracy, as TIN, raster or mesh</source>
+    <translation>Ein Gebiet einer gekachelten Pyramide in beliebiger Stufe oder Genauigkeit, als TIN, Raster oder Netz</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Extent</source>
+    <translation>Ausdehnung</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Extract from tiles</source>
+    <translation>Aus Kacheln entnehmen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Give a level or the largest error, not both.</source>
+    <translation>Geben Sie eine Stufe oder den größten Fehler an, nicht beides.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Give an extent or polygons, not both.</source>
+    <translation>Geben Sie eine Ausdehnung oder Polygone an, nicht beides.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Gives a region of what &lt;i&gt;Tile large DEM or point clouds&lt;/i&gt; made, at a level or as coarse as a largest error allows, without cracks between tiles. Only the tiles that it needs are read. Triangles that reach into the region are given whole.</source>
+    <translation>Gibt ein Gebiet dessen, was &lt;i&gt;Großes DGM oder Punktwolken kacheln&lt;/i&gt; gemacht hat, in einer Stufe oder so grob, wie ein größter Fehler es erlaubt, ohne Risse zwischen Kacheln. Nur die nötigen Kacheln werden gelesen. Dreiecke, die in das Gebiet reichen, kommen ganz.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>In the unit of the CRS. Empty for the mean spacing of the vertices.</source>
+    <translation>In der Einheit des KBS. Leer für den mittleren Abstand der Punkte.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Index of the tiles</source>
+    <translation>Index der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Index of tiles (*.gpkg)</source>
+    <translation>Index von Kacheln (*.gpkg)</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Instead of a level: fine only where it has to be for no input point of the region to be farther above or below the surface, in the unit of elevation.</source>
+    <translation>Statt einer Stufe: nur dort fein, wo es sein muss, damit kein Eingabepunkt des Gebiets weiter über oder unter der Fläche liegt, in der Einheit der Höhe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Instead: the region is that of all of them. This needs shapely.</source>
+    <translation>Stattdessen: das Gebiet ist das von ihnen allen. Dafür ist shapely nötig.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Largest error</source>
+    <translation>Größter Fehler</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Level, or the finest one in the region</source>
+    <translation>Stufe, oder die feinste im Gebiet</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Levels: 0 (coarsest) to {}</source>
+    <translation>Stufen: 0 (gröbste) bis {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Mesh of the region</source>
+    <translation>Netz des Gebiets</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>No output is chosen; choose a TIN, vertices, a raster or a mesh.</source>
+    <translation>Keine Ausgabe ist gewählt; wählen Sie ein TIN, Punkte, ein Raster oder ein Netz.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Number of triangles</source>
+    <translation>Anzahl der Dreiecke</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Number of vertices</source>
+    <translation>Anzahl der Punkte</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Of the whole: 0 is the coarsest; the number of levels is the input itself.</source>
+    <translation>Des Ganzen: 0 ist die gröbste; die Anzahl der Stufen ist die Eingabe selbst.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Or polygons</source>
+    <translation>Oder Polygone</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Points with elevation and attributes; &lt;i&gt;vertex_id&lt;/i&gt; counts the input's cells.</source>
+    <translation>Punkte mit Höhe und Attributen; &lt;i&gt;vertex_id&lt;/i&gt; zählt die Zellen der Eingabe.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Raster of the region</source>
+    <translation>Raster des Gebiets</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Reading the index</source>
+    <translation>Lesen des Index</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Reading the tiles</source>
+    <translation>Lesen der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>TIN of the region</source>
+    <translation>TIN des Gebiets</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>The TIN evaluated at the cell centres, 32-bit floats.</source>
+    <translation>Das TIN an den Zellmitten, als 32-Bit-Gleitkommazahlen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>The file &lt;i&gt;index.gpkg&lt;/i&gt; in the folder of the tiles.</source>
+    <translation>Die Datei &lt;i&gt;index.gpkg&lt;/i&gt; im Ordner der Kacheln.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>The region, in any CRS. Empty, and no polygons either, for all.</source>
+    <translation>Das Gebiet, in beliebigem KBS. Leer, und auch keine Polygone, für alles.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>There is no polygon in the layer; choose another.</source>
+    <translation>In dem Layer ist kein Polygon; wählen Sie einen anderen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Tiles and groups that were read</source>
+    <translation>Kacheln und Gruppen, die gelesen wurden</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Triangles with mean elevation and slope (degrees).</source>
+    <translation>Dreiecke mit mittlerer Höhe und Neigung (Grad).</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>Vertices of the region</source>
+    <translation>Punkte des Gebiets</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>of the surface</source>
+    <translation>der Fläche</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>tiles,index,region,clip,extent,tin,mesh,2dm,raster,level of detail,lod,large,pyramid,wavelet</source>
+    <translation>Kacheln,Index,Gebiet,zuschneiden,Ausdehnung,TIN,Netz,2dm,Raster,Detailstufe,LOD,groß,Pyramide,Wavelet</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/extract_from_tiles.py"/>
+    <source>{}: this is no index of tiles; choose index.gpkg in their folder.</source>
+    <translation>{}: das ist kein Index von Kacheln; wählen Sie index.gpkg in ihrem Ordner.</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>0 is the coarsest; the number of levels is the input itself. In the dialog, click a row of the table of levels.</source>
     <translation>0 ist die gröbste; die Anzahl der Stufen ist die Eingabe selbst. Im Dialog: eine Zeile der Tabelle der Stufen anklicken.</translation>
@@ -1240,11 +1480,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Largest error</source>
-    <translation>Größter Fehler</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Level, or the finer one of two</source>
     <translation>Stufe, oder die feinere von zweien</translation>
   </message>
@@ -1252,21 +1487,6 @@
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Mesh of the level</source>
     <translation>Netz der Stufe</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>No output is chosen; choose a TIN, vertices, a raster or a mesh.</source>
-    <translation>Keine Ausgabe ist gewählt; wählen Sie ein TIN, Punkte, ein Raster oder ein Netz.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Number of triangles</source>
-    <translation>Anzahl der Dreiecke</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Number of vertices</source>
-    <translation>Anzahl der Punkte</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
@@ -1310,16 +1530,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>The TIN evaluated at the cell centres, 32-bit floats.</source>
-    <translation>Das TIN an den Zellmitten, als 32-Bit-Gleitkommazahlen.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>Triangles with mean elevation and slope (degrees).</source>
-    <translation>Dreiecke mit mittlerer Höhe und Neigung (Grad).</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>Vertices of the level</source>
     <translation>Punkte der Stufe</translation>
   </message>
@@ -1327,11 +1537,6 @@
     <location filename="../../plugin/algorithms/extract_level.py"/>
     <source>With the largest error: how often edges are turned, vertices moved, and taken out where it allows. Vertices are then points of the input.</source>
     <translation>Mit dem größten Fehler: wie oft Kanten umgelegt, Stützpunkte verschoben und, wo er es erlaubt, entfernt werden. Stützpunkte sind dann Punkte der Eingabe.</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/extract_level.py"/>
-    <source>of the surface</source>
-    <translation>der Fläche</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/extract_level.py"/>
@@ -2219,6 +2424,116 @@
     <translation>ausdünnen,vereinfachen,generalisieren,thin,thinning,decimate,subsample,reduce,simplify,generalise,generalize,las,laz,lidar,punktwolke,point cloud,boden,ground,key points,model key points</translation>
   </message>
   <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Add the index to the map</source>
+    <translation>Den Index der Karte hinzufügen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Folder of tiles</source>
+    <translation>Ordner der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Making the tiles</source>
+    <translation>Machen der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Most levels of a tile</source>
+    <translation>Die meisten Stufen einer Kachel</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Number of levels of the whole</source>
+    <translation>Anzahl der Stufen des Ganzen</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Number of tiles</source>
+    <translation>Anzahl der Kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Of DEMs in cells, 1024 if empty; a tile of so many needs some 1.7 GB of memory. Of point clouds in the unit of x and y; if empty, such that a tile has about a million points, which need about 1 GB.</source>
+    <translation>Von DGM in Zellen, leer 1024; eine Kachel von so vielen braucht rund 1,7 GB Speicher. Von Punktwolken in der Einheit von x und y; leer so, dass eine Kachel etwa eine Million Punkte hat, die rund 1 GB brauchen.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Of each tile, and of each group of four. Empty for 64.</source>
+    <translation>Jeder Kachel, und jeder Gruppe von vieren. Leer für 64.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Opens the footprints of the tiles, with their sizes and errors.</source>
+    <translation>Öffnet die Umrisse der Kacheln, mit ihren Größen und Fehlern.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Reading the headers</source>
+    <translation>Lesen der Köpfe</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Set aside: stage {}, row {}, column {}: {}</source>
+    <translation>Beiseitegelegt: Stadium {}, Zeile {}, Spalte {}: {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Side of a tile</source>
+    <translation>Seite einer Kachel</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Terrain beyond memory to a tiled pyramid: a file for each tile, and an index</source>
+    <translation>Gelände, das nicht in den Speicher passt, wird eine gekachelte Pyramide: eine Datei je Kachel, und ein Index</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tile large DEM or point clouds</source>
+    <translation>Großes DGM oder Punktwolken kacheln</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tile {} of {}: stage {}, row {}, column {}</source>
+    <translation>Kachel {} von {}: Stadium {}, Zeile {}, Spalte {}</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tiles and groups made in this run</source>
+    <translation>Kacheln und Gruppen, die in diesem Lauf gemacht wurden</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tiles and groups that were set aside</source>
+    <translation>Kacheln und Gruppen, die beiseitegelegt wurden</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Tiles and groups that were there before</source>
+    <translation>Kacheln und Gruppen, die schon da waren</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Turns a DEM or point clouds that need not fit into memory into a pyramid of tiles. Each tile is analysed by itself, its border locked; then two by two tiles become one, up to a single one for the whole. At any level the tiles together are one TIN, without cracks. &lt;i&gt;Extract from tiles&lt;/i&gt; gives any region at any level. A run that was cancelled, or stopped in any other way, goes on where it was when it is started again with the same parameters.</source>
+    <translation>Macht aus einem DGM oder Punktwolken, die nicht in den Speicher passen müssen, eine Pyramide aus Kacheln. Jede Kachel wird für sich analysiert, ihr Rand festgehalten; dann werden je zwei mal zwei Kacheln eine, bis zu einer einzigen für das Ganze. In jeder Stufe sind die Kacheln zusammen ein TIN ohne Risse. &lt;i&gt;Aus Kacheln entnehmen&lt;/i&gt; gibt jedes Gebiet in jeder Stufe. Ein Lauf, der abgebrochen wurde oder sonst stehen blieb, geht dort weiter, wo er war, wenn er mit denselben Parametern wieder gestartet wird.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>With &lt;i&gt;index.gpkg&lt;/i&gt; and the tiles. Of an earlier run with the same parameters what is whole is kept; tiles of another input are replaced.</source>
+    <translation>Mit &lt;i&gt;index.gpkg&lt;/i&gt; und den Kacheln. Von einem früheren Lauf mit denselben Parametern bleibt, was heil ist; Kacheln einer anderen Eingabe werden ersetzt.</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>tile,tiles,large,big,huge,out of core,mosaic,dem,las,laz,copc,ept,lidar,index,pyramid,wavelet</source>
+    <translation>Kachel,Kacheln,groß,riesig,Speicher,Mosaik,DGM,LAS,LAZ,COPC,EPT,Lidar,Index,Pyramide,Wavelet</translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>{} tiles, {} with groups, in {} stages</source>
+    <translation>{} Kacheln, {} mit Gruppen, in {} Stadien</translation>
+  </message>
+  <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source> zoom   tiles  vertices  largest error (m)</source>
     <translation> Zoom Kacheln  Punkte  größter Fehler (m)</translation>
@@ -2240,11 +2555,6 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>
-    <source>Folder of tiles</source>
-    <translation>Ordner der Kacheln</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source>For light and shade.</source>
     <translation>Für Licht und Schatten.</translation>
   </message>
@@ -2262,11 +2572,6 @@
     <location filename="../../plugin/algorithms/web_terrain.py"/>
     <source>Largest error of the finest zoom, in metres</source>
     <translation>Größter Fehler der feinsten Zoomstufe, in Metern</translation>
-  </message>
-  <message>
-    <location filename="../../plugin/algorithms/web_terrain.py"/>
-    <source>Number of tiles</source>
-    <translation>Anzahl der Kacheln</translation>
   </message>
   <message>
     <location filename="../../plugin/algorithms/web_terrain.py"/>

@@ -174,7 +174,8 @@ class Request:
         """
         definition = self.algorithm.parameterDefinition(name)
         help_text = "" if definition is None else definition.help()
-        title = name if definition is None else definition.description()
+        shown = definition or self.algorithm.outputDefinition(name)
+        title = name if shown is None else shown.description()
         # The help of a file says what can be chosen; the first sentence of others, what it is.
         is_layer = definition is not None and definition.type() in ("sink", "rasterDestination")
         abstract = f"{self.algorithm.displayName()}: {title}. "

@@ -114,6 +114,10 @@ class Work:
         self.fraction = fraction
         return not self.is_left
 
+    def isCanceled(self) -> bool:
+        """Return whether nobody waits any more, as a `QgsFeedback` says it."""
+        return self.is_left
+
     def in_log(self, show: Callable[[str], None]) -> Callable[[str], None]:
         """Return a function that hands a text to the thread of the algorithm, which shows it."""
         return lambda text: self.said.put((show, text))

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from qgis.core import QgsFeedback
 
     from wavelet_gis.products.layers import Layer
+    from wavelet_gis.tiles.index import TileIndex
 
 Path = str | os.PathLike[str]
 
@@ -95,6 +96,55 @@ def add_layers(
     read_back(path, partial(check_rows, n_rows=rows))
 
 
+def write_tile_index(index: TileIndex) -> None:
+    """Write the GeoPackage of a tile set, as `wavelet_gis.tiles.index.write_index` does.
+
+    Raises
+    ------
+    QgsProcessingException
+        When GDAL or SQLite cannot write.
+    """
+    from wavelet_gis.io.atomic import new_file
+    from wavelet_gis.tiles.index import INDEX, LAYER, check_index, footprints, index_fields
+
+    path, fields, wkt = index.folder / INDEX, index_fields(index), index.plan.coordinate_system.wkt
+    refusal = partial(_unwritable, path, LAYER)
+    columns = [column.tolist() for column in fields.values()]
+    with new_file(path, overwrite=True) as scratch:
+        with (
+            without_exceptions(gdal, refusal),
+            without_exceptions(ogr, refusal),
+            without_exceptions(osr, refusal),
+        ):
+            driver = gdal.GetDriverByName("GPKG")
+            dataset = driver.Create(str(scratch), 0, 0, 0, gdal.GDT_Unknown)
+            options = ["GEOMETRY_NAME=geom", "FID=fid"]
+            table = dataset and dataset.CreateLayer(LAYER, _system(wkt), ogr.wkbPolygon, options)
+            if not table:
+                raise refusal(gdal.GetLastErrorMsg())
+            for name, column in fields.items():
+                table.CreateField(ogr.FieldDefn(name, _field_type(column)))
+            for shape, *values in zip(footprints(index), *columns, strict=True):
+                feature = ogr.Feature(table.GetLayerDefn())
+                feature.SetGeometry(ogr.CreateGeometryFromWkb(shape))
+                for name, value in zip(fields, values, strict=True):
+                    if value == value:  # not a number is no value
+                        feature.SetField(name, value)
+                if table.CreateFeature(feature):
+                    raise refusal(gdal.GetLastErrorMsg())
+            dataset.FlushCache()
+            table = dataset = None
+        check_index(scratch, len(index.records))
+
+
+def _system(wkt: str | None) -> Any:
+    if not wkt:
+        return None
+    system = osr.SpatialReference()
+    system.ImportFromWkt(wkt)
+    return system
+
+
 def _create(path: Path, layer: Layer, wkt: str | None) -> None:
     refusal = partial(_failure, path, layer)
     with (
@@ -103,10 +153,6 @@ def _create(path: Path, layer: Layer, wkt: str | None) -> None:
         without_exceptions(osr, refusal),
     ):
         dataset = gdal.OpenEx(str(path), gdal.OF_VECTOR | gdal.OF_UPDATE)
-        system = None
-        if wkt:
-            system = osr.SpatialReference()
-            system.ImportFromWkt(wkt)
         options = [
             f"DESCRIPTION={layer.description}",
             f"IDENTIFIER={layer.name}",
@@ -115,7 +161,7 @@ def _create(path: Path, layer: Layer, wkt: str | None) -> None:
             "SPATIAL_INDEX=NO",
         ]
         table = dataset and dataset.CreateLayer(
-            layer.name, system, _GEOMETRY_TYPES[layer.geometry_type], options
+            layer.name, _system(wkt), _GEOMETRY_TYPES[layer.geometry_type], options
         )
         if not table:
             raise refusal(gdal.GetLastErrorMsg())
@@ -182,14 +228,20 @@ def _bounds(layer: Layer) -> tuple[float, float, float, float]:
 
 
 def _field_type(column: NDArray[Any]) -> int:
+    if column.dtype.kind == "O":
+        return ogr.OFTString
     if column.dtype.kind == "f":
         return ogr.OFTReal
     return ogr.OFTInteger64 if column.dtype.itemsize > 4 else ogr.OFTInteger
 
 
 def _failure(path: Path, layer: Layer, reason: str) -> QgsProcessingException:
+    return _unwritable(path, layer.name, reason)
+
+
+def _unwritable(path: Path, layer: str, reason: str) -> QgsProcessingException:
     return QgsProcessingException(
         tr("{}: layer {} cannot be written ({}); check the disk and the name.").format(
-            path, layer.name, reason
+            path, layer, reason
         )
     )

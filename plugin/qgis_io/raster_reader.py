@@ -30,7 +30,12 @@ if TYPE_CHECKING:
         QgsRasterLayer,
     )
 
-    from wavelet_gis.model.dem import Dem
+    from wavelet_gis.io.raster import CellWindow
+    from wavelet_gis.model.dem import Dem, GridGeometry
+
+    from .background import Work
+
+    Stoppable = QgsFeedback | Work
 
 #: Cells read or written between two looks at the cancel button.
 STRIP_CELLS = 1 << 21
@@ -151,7 +156,42 @@ def read_dem(raster: RasterInput, feedback: QgsFeedback) -> Dem:
     return dem
 
 
-def _read_with_gdal(raster: RasterInput, path: str, feedback: QgsFeedback) -> Dem | None:
+def grid_of(raster: RasterInput, path: str) -> GridGeometry:
+    """Return all cells of a raster file.
+
+    Raises
+    ------
+    QgsProcessingException
+        It cannot be read.
+    """
+    from wavelet_gis.model.dem import GridGeometry
+
+    with without_exceptions(gdal, partial(_unreadable, raster)):
+        dataset = opened(gdal, path)
+        if dataset is None:
+            raise _unreadable(raster, gdal.GetLastErrorMsg())
+        return GridGeometry((dataset.RasterYSize, dataset.RasterXSize), _transform(dataset))
+
+
+def read_window(raster: RasterInput, path: str, window: CellWindow, feedback: Stoppable) -> Dem:
+    """Return some cells of a raster file, as `read_dem` returns all of them.
+
+    Raises
+    ------
+    QgsProcessingException
+        No such band, or a file that cannot be read.
+    Cancelled
+    """
+    with without_exceptions(gdal, partial(_unreadable, raster)):
+        dem = _read_with_gdal(raster, path, feedback, window)
+    if dem is None:
+        raise _unreadable(raster, gdal.GetLastErrorMsg())
+    return dem
+
+
+def _read_with_gdal(
+    raster: RasterInput, path: str, feedback: Stoppable, window: CellWindow | None = None
+) -> Dem | None:
     """Return the ``Dem``, or None where GDAL cannot open what its provider opened."""
     from wavelet_gis.model.dem import Dem, GridGeometry
 
@@ -162,29 +202,34 @@ def _read_with_gdal(raster: RasterInput, path: str, feedback: QgsFeedback) -> De
     dtype = _NUMPY_TYPES.get(band.DataType)
     if dtype is None:
         raise _unusable_type(raster, gdal.GetDataTypeName(band.DataType))
-    n_rows, n_columns = dataset.RasterYSize, dataset.RasterXSize
+    whole = GridGeometry((dataset.RasterYSize, dataset.RasterXSize), _transform(dataset))
+    row, column, n_rows, n_columns = window or (0, 0, *whole.shape)
     mask_band = band.GetMaskBand()
     values = np.empty((n_rows, n_columns), dtype=dtype)
     valid = np.ones((n_rows, n_columns), dtype=bool)
     for start, stop in strips(n_rows, n_columns, feedback):
-        window = (0, start, n_columns, stop - start)
-        values[start:stop] = _array(band.ReadRaster(*window), dtype, n_columns, raster)
+        strip = (column, row + start, n_columns, stop - start)
+        values[start:stop] = _array(band.ReadRaster(*strip), dtype, n_columns, raster)
         if raster.uses_nodata:
-            mask = mask_band.ReadRaster(*window, buf_type=gdal.GDT_Byte)
+            mask = mask_band.ReadRaster(*strip, buf_type=gdal.GDT_Byte)
             valid[start:stop] = _array(mask, np.dtype("u1"), n_columns, raster) != 0
-    c, a, b, f, d, e = dataset.GetGeoTransform()
     nodata = band.GetNoDataValue()
     scale, offset = band.GetScale(), band.GetOffset()
     dem = Dem(
         values=values,
         valid=valid,
-        geometry=GridGeometry((n_rows, n_columns), (a, b, c, d, e, f)),
+        geometry=whole.window(row, column, (n_rows, n_columns)),
         nodata=_as_stored(nodata, dtype),
         scale=1.0 if scale is None else float(scale),
         offset=0.0 if offset is None else float(offset),
         profile=_profile(dataset, band),
     )
     return _with_holes(dem, raster)
+
+
+def _transform(dataset: Any) -> tuple[float, float, float, float, float, float]:
+    c, a, b, f, d, e = dataset.GetGeoTransform()
+    return a, b, c, d, e, f
 
 
 def _read_with_qgis(raster: RasterInput, feedback: QgsFeedback) -> Dem:
@@ -242,7 +287,7 @@ def _with_holes(dem: Dem, raster: RasterInput) -> Dem:
     return dem
 
 
-def strips(n_rows: int, n_columns: int, feedback: QgsFeedback) -> Iterator[tuple[int, int]]:
+def strips(n_rows: int, n_columns: int, feedback: Stoppable) -> Iterator[tuple[int, int]]:
     """Yield ``(start, stop)`` rows, with a look at the cancel button before each."""
     from wavelet_core.errors import Cancelled
 

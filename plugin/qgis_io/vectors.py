@@ -17,7 +17,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from ..ui.enums import DOUBLE, INTEGER, LINE_Z, POINT_Z, POLYGON_Z
+from ..ui.enums import DOUBLE, INTEGER, LINE_Z, LONG_INTEGER, POINT_Z, POLYGON_Z
 from ..ui.exceptions import QgsProcessingException
 from ..ui.translation import tr
 from .crs_and_progress import require_running
@@ -186,8 +186,15 @@ def fields_of(layer: Layer) -> QgsFields:
     """Return the fields of a ``wavelet_gis.products.layers.Layer``."""
     fields = QgsFields()
     for name, column in layer.fields.items():
-        fields.append(QgsField(name, DOUBLE if column.dtype.kind == "f" else INTEGER))
+        fields.append(QgsField(name, _type_of(column)))
     return fields
+
+
+def _type_of(column: NDArray[Any]) -> Any:
+    """Return the type of a field: long where it must be, as for the points of large tile sets."""
+    if column.dtype.kind == "f":
+        return DOUBLE
+    return LONG_INTEGER if column.max(initial=0) > np.iinfo(np.int32).max else INTEGER
 
 
 def wkb_type_of(layer: Layer) -> Any:

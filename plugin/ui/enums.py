@@ -33,6 +33,7 @@ _shader: Any = QgsColorRampShader.Type
 #: Kinds of layers that a parameter takes.
 POINTS, LINES, POLYGONS = _source.TypeVectorPoint, _source.TypeVectorLine, _source.TypeVectorPolygon
 TABLE = _source.TypeVector
+RASTERS, FILES = _source.TypeRaster, _source.TypeFile
 
 #: Folds a parameter away in the dialog.
 ADVANCED = _flag.FlagAdvanced
@@ -57,8 +58,11 @@ INTERPOLATED = _shader.Interpolated
 
 #: Types of the fields of a layer.
 INTEGER: Any
+LONG_INTEGER: Any
 DOUBLE: Any
 if Qgis.versionInt() >= 33800:
     INTEGER, DOUBLE = QMetaType.Type.Int, QMetaType.Type.Double
+    LONG_INTEGER = QMetaType.Type.LongLong
 else:
     INTEGER, DOUBLE = QVariant.Int, QVariant.Double
+    LONG_INTEGER = QVariant.LongLong

@@ -398,6 +398,7 @@ def main() -> None:
         names = [f"dialog_{a.name()}" for a in algorithms]
         pictures.sheet("sheet_dialogs", names, 1500, 5, 420)
         pictures.alone("dialog_extractlevel", 800)
+        pictures.alone("dialog_tileterrain", 800)
     if "results" in parts:
         results(pictures, chosen.dem, folder)
         names = [name for name in pictures.images if name.startswith("result_")]

@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["contour_style", "detail_style", "tin_style", "vertex_style"]
+__all__ = ["contour_style", "detail_style", "tile_style", "tin_style", "vertex_style"]
 
 #: Elevation tints from low to high: green plains, ochre hills, brown and pale heights.
 _TERRAIN = [
@@ -42,6 +42,14 @@ _LEVELS = [
 
 #: Contours: their colour, and the width in millimetres of common ones and of index contours.
 _CONTOUR, _CONTOUR_WIDTHS = "133,91,52,255", (0.15, 0.4)
+
+#: Tiles by status: a name for it, the colour of the fill, that of the outline.
+_TILES = {
+    "whole": ("whole", "44,113,142,20", "44,113,142,255"),
+    "loose": ("points without a surface", "205,164,104,120", "171,121,83,255"),
+    "empty": ("without data", "255,255,255,0", "150,150,150,255"),
+    "failed": ("set aside", "202,0,32,110", "202,0,32,255"),
+}
 
 _HEADER = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
 
@@ -119,6 +127,39 @@ def contour_style() -> str:
     )
 
 
+def tile_style() -> str:
+    """QML of the footprints of tiles: coloured by ``status``, outlines wider at each ``stage``."""
+    symbols, categories = [], []
+    wider = _data_defined("outlineWidth", '0.2 + 0.25 * "stage"')
+    for k, (status, (label, fill, outline)) in enumerate(_TILES.items()):
+        options = _options(
+            {
+                "color": fill,
+                "style": "solid",
+                "joinstyle": "miter",
+                "outline_color": outline,
+                "outline_style": "solid",
+                "outline_width": "0.2",
+                "outline_width_unit": "MM",
+            }
+        )
+        symbols.append(
+            f'<symbol type="fill" name="{k}" alpha="1" clip_to_extent="1" force_rhr="0">'
+            f'<layer class="SimpleFill" enabled="1" locked="0" pass="0">{options}{wider}'
+            "</layer></symbol>"
+        )
+        categories.append(
+            f'<category symbol="{k}" value="{status}" type="string" label="{label}" render="true"/>'
+        )
+    return (
+        _HEADER + '<qgis version="3.28.0" styleCategories="Symbology">\n'
+        '<renderer-v2 type="categorizedSymbol" attr="status" symbollevels="0" '
+        'enableorderby="0" forceraster="0">\n'
+        f"<categories>{''.join(categories)}</categories>\n<symbols>{''.join(symbols)}</symbols>\n"
+        "</renderer-v2>\n<blendMode>0</blendMode>\n</qgis>\n"
+    )
+
+
 def detail_style(level: int, n_levels: int, magnitude: NDArray[np.float64]) -> str:
     """QML of a layer of details: points sized by ``magnitude``, in the colour of their level.
 
@@ -187,24 +228,27 @@ def _single_marker(
             "scale_method": "diameter",
         }
     )
-    data_defined = ""
-    if size_expression:
-        data_defined = (
-            '<data_defined_properties><Option type="Map">'
-            '<Option type="QString" name="name" value=""/>'
-            '<Option type="Map" name="properties"><Option type="Map" name="size">'
-            '<Option type="bool" name="active" value="true"/>'
-            f'<Option type="QString" name="expression" value={quoted(size_expression)}/>'
-            '<Option type="int" name="type" value="3"/></Option></Option>'
-            '<Option type="QString" name="type" value="collection"/></Option>'
-            "</data_defined_properties>"
-        )
+    data_defined = _data_defined("size", size_expression) if size_expression else ""
     return (
         _HEADER + '<qgis version="3.28.0" styleCategories="Symbology">\n'
         '<renderer-v2 type="singleSymbol" symbollevels="0" enableorderby="0" forceraster="0">\n'
         '<symbols><symbol type="marker" name="0" alpha="1" clip_to_extent="1" force_rhr="0">'
         f'<layer class="SimpleMarker" enabled="1" locked="0" pass="0">{options}{data_defined}'
         "</layer></symbol></symbols>\n</renderer-v2>\n<blendMode>0</blendMode>\n</qgis>\n"
+    )
+
+
+def _data_defined(name: str, expression: str) -> str:
+    """Return what makes a property of a symbol's layer follow an expression."""
+    return (
+        '<data_defined_properties><Option type="Map">'
+        '<Option type="QString" name="name" value=""/>'
+        f'<Option type="Map" name="properties"><Option type="Map" name="{name}">'
+        '<Option type="bool" name="active" value="true"/>'
+        f'<Option type="QString" name="expression" value={quoted(expression)}/>'
+        '<Option type="int" name="type" value="3"/></Option></Option>'
+        '<Option type="QString" name="type" value="collection"/></Option>'
+        "</data_defined_properties>"
     )
 
 

@@ -1,4 +1,4 @@
-"""Points, triangles and lines as well-known binary, built by numpy for millions at once."""
+"""Points, triangles, lines and boxes as well-known binary, built by numpy for millions at once."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["lines_wkb", "points_wkb", "triangles_wkb"]
+__all__ = ["boxes_wkb", "lines_wkb", "points_wkb", "triangles_wkb"]
 
 _LITTLE_ENDIAN = 1
-_POINT_Z, _LINE_Z, _POLYGON_Z = 1001, 1002, 1003
+_POLYGON, _POINT_Z, _LINE_Z, _POLYGON_Z = 3, 1001, 1002, 1003
 
 _POINT = np.dtype([("order", "u1"), ("type", "<u4"), ("xyz", "<f8", (3,))])
 _TRIANGLE = np.dtype(
@@ -22,6 +22,17 @@ _TRIANGLE = np.dtype(
         ("n_rings", "<u4"),
         ("n_corners", "<u4"),
         ("xyz", "<f8", (4, 3)),
+    ]
+)
+
+
+_BOX = np.dtype(
+    [
+        ("order", "u1"),
+        ("type", "<u4"),
+        ("n_rings", "<u4"),
+        ("n_corners", "<u4"),
+        ("xy", "<f8", (5, 2)),
     ]
 )
 
@@ -40,6 +51,18 @@ def triangles_wkb(vertices: NDArray[np.float64], faces: NDArray[Any]) -> NDArray
     records["order"], records["type"] = _LITTLE_ENDIAN, _POLYGON_Z
     records["n_rings"], records["n_corners"] = 1, 4
     records["xyz"] = vertices[faces[:, [0, 1, 2, 0]]]
+    return _as_bytes(records)
+
+
+def boxes_wkb(boxes: NDArray[np.float64]) -> NDArray[Any]:
+    """Return ``(n,)`` bytes objects, a Polygon for each row of ``(n, 4)`` ends in x and y.
+
+    Smallest x and y come first, then the largest.
+    """
+    records = np.empty(len(boxes), dtype=_BOX)
+    records["order"], records["type"] = _LITTLE_ENDIAN, _POLYGON
+    records["n_rings"], records["n_corners"] = 1, 5
+    records["xy"] = boxes[:, [2, 1, 2, 3, 0, 3, 0, 1, 2, 1]].reshape(-1, 5, 2)
     return _as_bytes(records)
 
 

@@ -25,44 +25,47 @@ class Area:
     Attributes
     ----------
     plan : TilePlan
-    shape : shapely geometry or None
-        In the working frame; None for all.
     bounds : tuple of float or None
-        Of a box, in the working frame: smallest x and y, largest x and y.
+        Of a box, or around polygons, in the working frame: smallest x and y, largest x and y; None
+        for all.
+    shape : shapely geometry or None
+        In the working frame; None for a box, which needs no shapely.
     option : str
         What names it, for messages.
     """
 
     plan: TilePlan
-    shape: Any = None
     bounds: Box | None = None
+    shape: Any = None
     option: str = "bbox"
+
+    @property
+    def is_all(self) -> bool:
+        """Whether it is all of the tile set."""
+        return self.bounds is None
 
     def has_piece(self, piece: Piece) -> bool:
         """Return whether the cells of a piece, or its border, reach into it."""
-        import shapely
-
-        if self.shape is None:
-            return True
         x, y = footprint_of(self.plan, piece)
         local = self.plan.local_frame
         corners = np.column_stack([local.local_x(x), local.local_y(y)])
-        return bool(shapely.intersects(shapely.polygons(corners), self.shape))
+        return bool(self._meet(corners[None])[0])
 
     def faces_of(self, mesh: TriangleMesh) -> NDArray[np.bool_]:
         """Return which faces of a mesh reach into it."""
-        import shapely
+        return self._meet(mesh.vertices[mesh.faces][:, :, :2])
 
-        if self.shape is None:
-            return np.ones(mesh.n_faces, dtype=bool)
-        corners = mesh.vertices[mesh.faces][:, :, :2]
-        x_min, y_min, x_max, y_max = self.shape.bounds
-        found: NDArray[np.bool_] = (
-            (corners.min(axis=1) <= (x_max, y_max)) & (corners.max(axis=1) >= (x_min, y_min))
-        ).all(axis=1)
-        at_stake = np.flatnonzero(found)
-        shapely.prepare(self.shape)
-        found[at_stake] = shapely.intersects(shapely.polygons(corners[at_stake]), self.shape)
+    def _meet(self, corners: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return which convex polygons, ``(n, k, 2)``, reach into it."""
+        if self.bounds is None:
+            return np.ones(len(corners), dtype=bool)
+        found = _meet_box(corners, self.bounds)
+        if self.shape is not None:
+            import shapely
+
+            at_stake = np.flatnonzero(found)
+            shapely.prepare(self.shape)
+            found[at_stake] = shapely.intersects(shapely.polygons(corners[at_stake]), self.shape)
         return found
 
     def part_of(self, mesh: TriangleMesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -80,11 +83,14 @@ class Area:
 
     def has_points(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Return which points, in the working frame, are in it or on its edge."""
-        import shapely
-
-        if self.shape is None:
+        if self.bounds is None:
             return np.ones(len(points), dtype=bool)
-        found: NDArray[np.bool_] = shapely.intersects_xy(self.shape, points[:, 0], points[:, 1])
+        low, high = self.bounds[:2], self.bounds[2:]
+        found = np.asarray(((points[:, :2] >= low) & (points[:, :2] <= high)).all(axis=1))
+        if self.shape is not None:
+            import shapely
+
+            found &= shapely.intersects_xy(self.shape, points[:, 0], points[:, 1])
         return found
 
 
@@ -101,8 +107,8 @@ def area_of(plan: TilePlan, bbox: Box | None, polygon: Any) -> Area:
     plan : TilePlan
     bbox : tuple of float or None
         Smallest x and y, largest x and y, in the coordinates of the input.
-    polygon : path, GeoDataFrame or None
-        A vector file of polygons, in any CRS.
+    polygon : path, GeoDataFrame, shapely geometry or None
+        A vector file of polygons, in any CRS; or a geometry in the coordinates of the input.
 
     Raises
     ------
@@ -111,16 +117,11 @@ def area_of(plan: TilePlan, bbox: Box | None, polygon: Any) -> Area:
     InputFileError, CrsError
         Polygons that cannot be read, or not be brought to the CRS of the tiles.
     """
-    import shapely
-
     if bbox is not None and polygon is not None:
         raise OptionError("give one of {0} and {1}.", "bbox", "polygon")
     if polygon is not None:
-        from wavelet_gis.workflows.lines.layer_shapes import POLYGONS, shapes_in_frame
-
-        place = _Place(plan.coordinate_system, plan.local_frame)
-        shapes, _ = shapes_in_frame(place, polygon, "polygon", POLYGONS)
-        return Area(plan, shapely.union_all(shapely.force_2d(shapes)), option="polygon")
+        shape = _shape_in_frame(plan, polygon)
+        return Area(plan, shape.bounds, shape, option="polygon")
     if bbox is None:
         return Area(plan)
     if not (bbox[0] < bbox[2] and bbox[1] < bbox[3]):
@@ -129,8 +130,49 @@ def area_of(plan: TilePlan, bbox: Box | None, polygon: Any) -> Area:
         )
     frame = plan.local_frame
     x, y = frame.local_x(np.array(bbox[::2])), frame.local_y(np.array(bbox[1::2]))
-    bounds = (float(x[0]), float(y[0]), float(x[1]), float(y[1]))
-    return Area(plan, shapely.box(*bounds), bounds)
+    return Area(plan, (float(x[0]), float(y[0]), float(x[1]), float(y[1])))
+
+
+def _shape_in_frame(plan: TilePlan, polygon: Any) -> Any:
+    """Return polygons as one shape in the working frame."""
+    import shapely
+
+    from wavelet_gis.workflows.lines.layer_shapes import POLYGONS, shapes_in_frame
+
+    if isinstance(polygon, shapely.Geometry):
+        local = plan.local_frame
+        return shapely.transform(
+            polygon, lambda xy: np.column_stack([local.local_x(xy[:, 0]), local.local_y(xy[:, 1])])
+        )
+    place = _Place(plan.coordinate_system, plan.local_frame)
+    shapes, _ = shapes_in_frame(place, polygon, "polygon", POLYGONS)
+    return shapely.union_all(shapely.force_2d(shapes))
+
+
+def _meet_box(corners: NDArray[np.float64], box: Box) -> NDArray[np.bool_]:
+    """Return which convex polygons, ``(n, k, 2)``, have a point in a box or on its edge.
+
+    Two convex shapes that have no point in common are on two sides of a line along an edge of one
+    of them.
+    """
+    low, high = np.array(box[:2]), np.array(box[2:])
+    found: NDArray[np.bool_] = ((corners.min(axis=1) <= high) & (corners.max(axis=1) >= low)).all(
+        axis=1
+    )
+    at_stake = np.flatnonzero(found)
+    some = corners[at_stake]
+    ends = np.array([[low[0], low[1]], [high[0], low[1]], high, [low[0], high[1]]])
+    meet = np.ones(len(some), dtype=bool)
+    for k in range(corners.shape[1]):
+        start = some[:, k, None]
+        along = some[:, (k + 1) % corners.shape[1], None] - start
+        own, of_box = (
+            along[..., 0] * (to - start)[..., 1] - along[..., 1] * (to - start)[..., 0]
+            for to in (some, ends[None])
+        )
+        meet &= (own.min(axis=1) <= of_box.max(axis=1)) & (own.max(axis=1) >= of_box.min(axis=1))
+    found[at_stake] = meet
+    return found
 
 
 def footprint_of(plan: TilePlan, piece: Piece) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

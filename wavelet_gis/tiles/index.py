@@ -19,12 +19,26 @@ from wavelet_gis.io.geopackage import check_database, check_rows
 from wavelet_gis.io.names import plain_folder
 from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.model.dem import grid_bounds
+from wavelet_gis.products.wkb import boxes_wkb
 from wavelet_gis.tiles.piece import PIECES, level_handed_on, read_record
 from wavelet_gis.tiles.plan import PLAN, Piece, TilePlan
 
-__all__ = ["INDEX", "TileIndex", "is_index", "open_index", "write_index"]
+__all__ = [
+    "INDEX",
+    "LAYER",
+    "TileIndex",
+    "check_index",
+    "footprints",
+    "index_fields",
+    "is_index",
+    "open_index",
+    "write_index",
+]
 
 INDEX = "index.gpkg"
+
+#: Its layer.
+LAYER = "tiles"
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,14 +142,11 @@ def open_index(path: str | os.PathLike[str]) -> TileIndex:
     return TileIndex(folder, plan, records)
 
 
-def write_index(index: TileIndex) -> None:
-    """Write the GeoPackage of a tile set: the layer ``tiles``, one footprint a piece."""
-    from pyogrio.errors import DataLayerError, DataSourceError, FeatureError
-    from pyogrio.raw import write
-
+def index_fields(index: TileIndex) -> dict[str, NDArray[Any]]:
+    """Return the fields of the layer ``tiles``, a row for each piece that has been tried."""
     pieces = list(index.records)
     rows = [index.records[piece] for piece in pieces]
-    fields: dict[str, NDArray[Any]] = {
+    return {
         "stage": np.array([piece.stage for piece in pieces], np.int32),
         "row": np.array([piece.row for piece in pieces], np.int32),
         "column": np.array([piece.column for piece in pieces], np.int32),
@@ -156,17 +167,30 @@ def write_index(index: TileIndex) -> None:
         "max_error": np.array([row.get("max_error", np.nan) for row in rows]),
         "sha256": np.array([row.get("sha256", "") for row in rows], object),
     }
-    geometry = np.array([_footprint(index.plan, piece) for piece in pieces], object)
+
+
+def footprints(index: TileIndex) -> NDArray[Any]:
+    """Return the footprints of those pieces, ``(n,)`` bytes objects of well-known binary."""
+    boxes = np.array([_bounds(index.plan, piece) for piece in index.records]).reshape(-1, 4)
+    return boxes_wkb(boxes)
+
+
+def write_index(index: TileIndex) -> None:
+    """Write the GeoPackage of a tile set: the layer ``tiles``, one footprint a piece."""
+    from pyogrio.errors import DataLayerError, DataSourceError, FeatureError
+    from pyogrio.raw import write
+
+    fields = index_fields(index)
     with new_file(index.folder / INDEX, overwrite=True) as scratch:
         try:
             with plain_folder(scratch) as name, warnings.catch_warnings():
                 warnings.filterwarnings("ignore", "'crs' was not provided")  # nor has the input one
                 write(
                     name,
-                    geometry,
+                    footprints(index),
                     list(fields.values()),
                     list(fields),
-                    layer="tiles",
+                    layer=LAYER,
                     driver="GPKG",
                     geometry_type="Polygon",
                     crs=index.plan.coordinate_system.wkt,
@@ -176,13 +200,15 @@ def write_index(index: TileIndex) -> None:
                 f"{index.folder / INDEX}: the index cannot be written, the pieces are there; "
                 f"{room_at(index.folder)}."
             ) from error
-        read_back(scratch, check_database)
-        read_back(scratch, partial(check_rows, n_rows={"tiles": len(pieces)}))
+        check_index(scratch, len(index.records))
 
 
-def _footprint(plan: TilePlan, piece: Piece) -> bytes:
-    import shapely
+def check_index(path: Path, n_rows: int) -> None:
+    """Read an index back that was just written."""
+    read_back(path, check_database)
+    read_back(path, partial(check_rows, n_rows={LAYER: n_rows}))
 
+
+def _bounds(plan: TilePlan, piece: Piece) -> tuple[float, float, float, float]:
     top, left, bottom, right = plan.cells(piece)
-    geometry = plan.geometry.window(top, left, (bottom - top + 1, right - left + 1))
-    return bytes(shapely.to_wkb(shapely.box(*grid_bounds(geometry))))
+    return grid_bounds(plan.geometry.window(top, left, (bottom - top + 1, right - left + 1)))

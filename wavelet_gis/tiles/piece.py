@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import PyramidError, TriangleMesh, WaveletError
+from wavelet_core import Cancelled, Progress, PyramidError, TriangleMesh, WaveletError
 from wavelet_core import analyse as core_analyse
 from wavelet_gis._fields import holds_fields
 from wavelet_gis.errors import InputFileError
@@ -42,6 +42,7 @@ __all__ = [
     "LOOSE",
     "PIECES",
     "Joined",
+    "ReadDem",
     "cells_of",
     "handed_on",
     "join",
@@ -50,6 +51,9 @@ __all__ = [
     "read_record",
     "sha256_of",
 ]
+
+#: Reads part of a raster, as `wavelet_gis.io.raster.read_dem` does.
+ReadDem = Callable[..., tuple[Dem, Any]]
 
 #: Folder of the files of the pieces.
 PIECES = "pieces"
@@ -102,7 +106,13 @@ class Joined(NamedTuple):
         return TriangleMesh(self.vertices, self.faces, self.attributes, self.names)
 
 
-def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, Any]:
+def make_piece(
+    folder: str,
+    piece: Piece,
+    inputs: dict[str, str],
+    read: ReadDem | None = None,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
     """Make the pyramid of a piece and its record; return the record.
 
     Parameters
@@ -113,6 +123,15 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
     inputs : dict of str to str
         What it is made from, and a checksum or the like of each, for the record; of the parts of a
         group also the level that it begins with, see `handed_on`.
+    read : callable, optional
+        What reads rasters; by default `wavelet_gis.io.raster.read_dem`.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Raises
+    ------
+    Cancelled
+        ``progress`` returned False.
 
     Notes
     -----
@@ -133,7 +152,7 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
     place.parent.mkdir(parents=True, exist_ok=True)
     try:
         with collected(), _dated(plan):
-            made = _made(folder, plan, piece, inputs)
+            made = _made(folder, plan, piece, inputs, read, progress)
             geo = made.geo
             if geo is None and made.points is not None:
                 rest = place.with_suffix(LOOSE)
@@ -150,6 +169,8 @@ def make_piece(folder: str, piece: Piece, inputs: dict[str, str]) -> dict[str, A
                 record["n_bytes"] = place.stat().st_size
                 if piece.stage + 1 < plan.n_stages:
                     keep_levels(folder, piece.name, record["sha256"], geo.pyramid)
+    except Cancelled:
+        raise
     except (WaveletError, OSError) as error:  # a full disk, of whatever kind
         record |= {"status": "failed", "reason": " ".join(str(error).split())}
     record["seconds"] = round(perf_counter() - began, 3)
@@ -261,26 +282,35 @@ class _Made(NamedTuple):
     points: bytes | None = None
 
 
-def _made(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) -> _Made:
+def _made(
+    folder: str,
+    plan: TilePlan,
+    piece: Piece,
+    inputs: dict[str, str],
+    read: ReadDem | None,
+    progress: Progress | None,
+) -> _Made:
     if piece.stage > 0:
-        return _Made(_group(folder, plan, piece, inputs))
+        return _Made(_group(folder, plan, piece, inputs, progress))
     if plan.points is None:
-        return _Made(_tile(plan, piece))
+        return _Made(_tile(plan, piece, read, progress))
     from wavelet_gis.tiles.cloud.tile import cloud_tile, tile_pyramid
 
     tile = cloud_tile(folder, plan, piece)
     if tile is None:
         return _Made(None)
-    geo = tile_pyramid(plan, piece, tile)
+    geo = tile_pyramid(plan, piece, tile, progress)
     return _Made(geo, None if geo is not None else tile.points.to_bytes())
 
 
-def _tile(plan: TilePlan, piece: Piece) -> GeoPyramid | None:
+def _tile(
+    plan: TilePlan, piece: Piece, read: ReadDem | None, progress: Progress | None
+) -> GeoPyramid | None:
     """Return the pyramid of a tile; None where it has no data.
 
     Cells by themselves are vertices without faces, and stay so.
     """
-    dem = tile_dem(plan, piece)
+    dem = tile_dem(plan, piece, read)
     if dem is None or not dem.valid.any():
         return None
     mesh = dem_mesh(dem, plan.local_frame)
@@ -296,7 +326,8 @@ def _tile(plan: TilePlan, piece: Piece) -> GeoPyramid | None:
         plan.local_frame,
         plan.vertical_unit,
     )
-    return analyse(terrain, locked=locked, **plan.options_of(piece, mesh.n_vertices)).geo
+    options = plan.options_of(piece, mesh.n_vertices)
+    return analyse(terrain, locked=locked, progress=progress, **options).geo
 
 
 def handed_on(checksum: str, level: int) -> str:
@@ -310,7 +341,13 @@ def level_handed_on(text: str) -> int:
     return int(level) if level.isdecimal() else 0
 
 
-def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) -> GeoPyramid | None:
+def _group(
+    folder: str,
+    plan: TilePlan,
+    piece: Piece,
+    inputs: dict[str, str],
+    progress: Progress | None,
+) -> GeoPyramid | None:
     """Return the pyramid of a group; None where none of its parts has a surface."""
     from wavelet_gis.io.pyramid.pyramid_file import read_levels
 
@@ -339,6 +376,7 @@ def _group(folder: str, plan: TilePlan, piece: Piece, inputs: dict[str, str]) ->
         locked=locked,
         integrals=whole.integrals,
         points=points if plan.is_error_guided else None,
+        progress=progress,
         **plan.options_of(piece, len(whole.cells)),
     )
     geo = GeoPyramid(
@@ -407,11 +445,12 @@ def _is_inside(faces: NDArray[np.int64], n_vertices: int) -> NDArray[np.bool_]:
     return inside
 
 
-def tile_dem(plan: TilePlan, piece: Piece) -> Dem | None:
+def tile_dem(plan: TilePlan, piece: Piece, read: ReadDem | None = None) -> Dem | None:
     """Return the cells of a tile, of whatever files have them; None where none has."""
     from wavelet_gis.io.raster import CellWindow, read_dem
     from wavelet_gis.io.raster.mosaic import mosaic
 
+    read = read or read_dem
     top, left, bottom, right = plan.cells(piece)
     names, dems = [], []
     for file in plan.files:
@@ -429,7 +468,7 @@ def tile_dem(plan: TilePlan, piece: Piece) -> Dem | None:
             last_row - first_row + 1,
             last_column - first_column + 1,
         )
-        dem, _ = read_dem(file.path, window=window, **plan.reading)
+        dem, _ = read(file.path, window=window, **plan.reading)
         names.append(file.path)
         dems.append(dem)
     if not dems:

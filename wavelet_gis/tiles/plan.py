@@ -34,6 +34,7 @@ __all__ = [
     "TilePlan",
     "checked_wavelets",
     "ends_of_tiles",
+    "plan_of_grids",
     "plan_of_rasters",
 ]
 
@@ -391,25 +392,56 @@ def plan_of_rasters(
     """
     from wavelet_gis.crs.lookup import coordinate_system
 
-    if tile < 8 or not 1 <= levels <= LEVELS:
-        raise OptionError(
-            "{0} is {tile} and {1} is {levels}; give at least 8 cells, and 1 to {most} levels.",
-            "tile",
-            "levels",
-            tile=tile,
-            levels=levels,
-            most=LEVELS,
-        )
-    wavelets = checked_wavelets(wavelets)
+    _require_sizes(tile, levels)
     paths = _raster_paths(data)
     reading = {"band": band, "nodata": nodata, "offline": offline}
     grids, places = _grids_and_places(paths, reading)
     place = agreed(paths, places, any_crs=bool(crs), any_unit=bool(vertical_unit))
-    geometry, files = _laid_out(paths, grids)
     system = coordinate_system(crs) if crs else coordinate_system(place.wkt)
-    frame, unit = frame_of_bounds(
-        joint_name(paths), system, grid_bounds(geometry), vertical_unit or place.vertical_unit
+    unit = vertical_unit or place.vertical_unit
+    return plan_of_grids(
+        paths, grids, system, unit, reading, tile=tile, levels=levels, wavelets=wavelets
     )
+
+
+def plan_of_grids(
+    paths: Sequence[str],
+    grids: Sequence[GridGeometry],
+    system: CoordinateSystem,
+    vertical_unit: str | None,
+    reading: dict[str, Any],
+    *,
+    tile: int = TILE,
+    levels: int = LEVELS,
+    wavelets: dict[str, Any] | None = None,
+) -> TilePlan:
+    """Return the plan by which rasters are tiled of which the grids are known.
+
+    Parameters
+    ----------
+    paths : sequence of str
+        Whole paths, for whoever makes tiles.
+    grids : sequence of GridGeometry
+        The cells of each.
+    system : CoordinateSystem
+        Of all of them.
+    vertical_unit : str or None
+    reading : dict
+        Options by which they are read: ``band``, ``nodata``, ``offline``.
+    tile, levels, wavelets
+        See `plan_of_rasters`.
+
+    Raises
+    ------
+    InputFileError
+        Grids that do not fit.
+    OptionError
+        A size or a number of levels that makes no tiles.
+    """
+    _require_sizes(tile, levels)
+    wavelets = checked_wavelets(wavelets)
+    geometry, files = _laid_out(paths, grids)
+    frame, unit = frame_of_bounds(joint_name(paths), system, grid_bounds(geometry), vertical_unit)
     n_rows, n_columns = geometry.shape
     return TilePlan(
         files=files,
@@ -424,6 +456,18 @@ def plan_of_rasters(
         frame=frame.to_dict(),
         vertical_unit=unit,
     )
+
+
+def _require_sizes(tile: int, levels: int) -> None:
+    if tile < 8 or not 1 <= levels <= LEVELS:
+        raise OptionError(
+            "{0} is {tile} and {1} is {levels}; give at least 8 cells, and 1 to {most} levels.",
+            "tile",
+            "levels",
+            tile=tile,
+            levels=levels,
+            most=LEVELS,
+        )
 
 
 def _raster_paths(data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]) -> list[str]:

@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core.errors import OptionError
+from wavelet_core.progress import report
 from wavelet_gis.errors import InputFileError, TerrainWarning
 from wavelet_gis.model.dem import Dem
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -55,6 +56,7 @@ def extract_region(
     max_error: float | None = None,
     bbox: Box | None = None,
     polygon: Any = None,
+    progress: Progress | None = None,
 ) -> Region:
     """Return a region of a tile set at a level, or as coarse as a tolerance allows.
 
@@ -73,11 +75,15 @@ def extract_region(
     bbox : tuple of float, optional
         Smallest x and y, largest x and y, in the coordinates of the input. Triangles that reach
         into it are given whole. By default all.
-    polygon : path or GeoDataFrame, optional
-        Instead: polygons, in any CRS.
+    polygon : path, GeoDataFrame or shapely geometry, optional
+        Instead: polygons, in any CRS; or a geometry in the coordinates of the input.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
+    Cancelled
+        ``progress`` returned False.
     InputFileError
         There is no tile set, no such level, or nothing of it in the region.
     OptionError
@@ -100,7 +106,9 @@ def extract_region(
         )
     area = area_of(plan, bbox, polygon)
     parts = (
-        _at_level(found, area, level or 0) if max_error is None else _within(found, area, max_error)
+        _at_level(found, area, level or 0, progress)
+        if max_error is None
+        else _within(found, area, max_error, progress)
     )
     _warn_of_gaps(found, area, parts.stage)
     if not parts.meshes:
@@ -112,7 +120,7 @@ def extract_region(
         )
     whole = join(plan, parts.meshes, [np.ones(mesh.n_vertices) for mesh in parts.meshes])
     mesh, cells = whole.mesh, whole.cells
-    if area.shape is not None:
+    if not area.is_all:
         used, faces = area.part_of(mesh)
         if not len(used):
             raise InputFileError(
@@ -143,20 +151,21 @@ class _Parts(NamedTuple):
     errors: SurfaceErrors | None
 
 
-def _at_level(index: TileIndex, area: Area, level: int) -> _Parts:
+def _at_level(index: TileIndex, area: Area, level: int, progress: Progress | None) -> _Parts:
     stage, below = index.place_of(level)
     pieces = [piece for piece in index.whole(stage) if area.has_piece(piece)]
-    geos = [_loaded(index, piece, below) for piece in pieces]
-    meshes = [
-        geo.pyramid.mesh(_level(index, piece, below))
-        for piece, geo in zip(pieces, geos, strict=True)
-    ]
-    return _Parts(pieces, meshes, next(iter(geos), None), level, stage, None)
+    meshes, first = [], None
+    for k, piece in enumerate(pieces):
+        report(progress, k / len(pieces))
+        geo = _loaded(index, piece, below)
+        meshes.append(geo.pyramid.mesh(_level(index, piece, below)))
+        first = first or geo
+    return _Parts(pieces, meshes, first, level, stage, None)
 
 
-def _within(index: TileIndex, area: Area, max_error: float) -> _Parts:
+def _within(index: TileIndex, area: Area, max_error: float, progress: Progress | None) -> _Parts:
     z_scale = index.plan.local_frame.z_scale
-    chosen = list(pieces_within(index, area, max_error * z_scale))
+    chosen = list(pieces_within(index, area, max_error * z_scale, progress))
     pieces = [one.piece for one in chosen]
     of_loose = [
         PointErrors(np.full(len(cells), np.nan), cells)

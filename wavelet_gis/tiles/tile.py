@@ -203,6 +203,7 @@ def run_plan(
     overwrite: bool = False,
     on_piece: OnPiece | None = None,
     make: Callable[[str, Piece, dict[str, str]], dict[str, Any]] = make_piece,
+    write: Callable[[TileIndex], None] = write_index,
 ) -> Tiled:
     """Make all pieces of a plan, stage by stage, and the index.
 
@@ -213,6 +214,8 @@ def run_plan(
         See `tile_rasters`.
     make : callable
         What makes a piece; `wavelet_gis.tiles.piece.make_piece` says how.
+    write : callable
+        What writes the index.
     """
     place = _prepared(Path(folder).absolute(), plan, overwrite)
     n_total = sum(len(plan.pieces(stage)) for stage in range(plan.n_stages))
@@ -245,7 +248,7 @@ def run_plan(
         if stage > 0:
             drop_levels(place, stage - 1)
     index = open_index(place)
-    write_index(index)
+    write(index)
     if plan.points is not None and all(row["status"] != "failed" for row in index.records.values()):
         shutil.rmtree(place / CUT, ignore_errors=True)
     tiled = Tiled(index, n_made, n_found)

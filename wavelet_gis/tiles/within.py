@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import TriangleMesh
+from wavelet_core import Progress, TriangleMesh
 from wavelet_core.accuracy.between_levels import mesh_of_accuracy
 from wavelet_core.mesh.location import errors_with_border
+from wavelet_core.progress import report
 from wavelet_gis.tiles.area import Area
 from wavelet_gis.tiles.index import TileIndex
 from wavelet_gis.tiles.input_points import InputPoints, points_of_tile
@@ -60,7 +61,9 @@ class Chosen(NamedTuple):
     errors: tuple[PointErrors, ...]
 
 
-def pieces_within(index: TileIndex, area: Area, limit: float) -> Iterator[Chosen]:
+def pieces_within(
+    index: TileIndex, area: Area, limit: float, progress: Progress | None = None
+) -> Iterator[Chosen]:
     """Yield the pieces of an area by which no vertex of the input is farther off.
 
     Parameters
@@ -69,18 +72,25 @@ def pieces_within(index: TileIndex, area: Area, limit: float) -> Iterator[Chosen
     area : Area
     limit : float
         Vertical distance in the working frame.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     top, tiles = index.plan.n_stages - 1, TilePoints(index)
+    n_tiles = sum(area.has_piece(tile) for tile in index.plan.pieces(0))
+    n_left = n_tiles
     waiting = [piece for piece in reversed(index.plan.pieces(top)) if area.has_piece(piece)]
     while waiting:
         piece = waiting.pop()
+        report(progress, 1.0 - n_left / max(n_tiles, 1))
         status = index.records.get(piece, {}).get("status", "missing")
+        chosen = None
         if status == "whole":
             chosen = (_tile if piece.stage == 0 else _group)(tiles, area, piece, limit)
             if chosen is not None:
                 yield chosen
-                continue
-        if piece.stage > 0:
+        if piece.stage == 0 or chosen is not None:
+            n_left -= sum(area.has_piece(tile) for tile in index.plan.tiles(piece))
+        else:
             parts = [part for part in index.plan.parts(piece) if area.has_piece(part)]
             waiting += reversed(parts)
 
@@ -191,7 +201,7 @@ def _counted(
     area: Area, mesh: TriangleMesh, points: InputPoints, below: NDArray[np.float64]
 ) -> PointErrors:
     """Return the errors of the points that count: those of the area, or under its triangles."""
-    if area.shape is None:
+    if area.is_all:
         return PointErrors(points.heights + below, points.cells)
     used, faces = area.part_of(mesh)
     below = _errors_on(TriangleMesh(mesh.vertices[used], faces), points.places)

@@ -25,6 +25,8 @@ ALGORITHMS = (
     "thinpointcloud",
     "classifyground",
     "webterrain",
+    "tileterrain",
+    "extractfromtiles",
     "contours",
     "profile",
     "shapeoflevel",

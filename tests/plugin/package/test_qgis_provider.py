@@ -14,6 +14,7 @@ IDS = {
     "clusterdetails",
     "detaillayers",
     "difference",
+    "extractfromtiles",
     "extractlevel",
     "filterlevels",
     "meshquality",
@@ -22,6 +23,7 @@ IDS = {
     "qualityreport",
     "reconstruct",
     "simplifydem",
+    "tileterrain",
     "webterrain",
 }
 

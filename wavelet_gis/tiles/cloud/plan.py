@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -208,10 +210,26 @@ def _spacing(
     low: NDArray[np.int64], high: NDArray[np.int64], ratio: tuple[int, int], n_points: int
 ) -> int:
     """Return the mean distance of neighbouring points, in steps; flight lines may overlap."""
-    import shapely
+    area = _covered_area((low * ratio).astype(np.float64), (high * ratio).astype(np.float64))
+    return max(round(math.sqrt(area / n_points)), 1)
 
-    boxes = shapely.box(*(low * ratio).T, *(high * ratio).T)
-    return max(round(float(np.sqrt(shapely.union_all(boxes).area / n_points))), 1)
+
+def _covered_area(low: NDArray[np.float64], high: NDArray[np.float64]) -> float:
+    """Return the area that boxes cover, those that overlap counted once.
+
+    In stripes between all their ends in x, in which each box runs from one side to the other.
+    """
+    ends = np.unique([low[:, 0], high[:, 0]])
+    order = np.argsort(low[:, 1], kind="stable")
+    low, high = low[order], high[order]
+    covered = 0.0
+    for west, east in pairwise(ends.tolist()):
+        there = (low[:, 0] <= west) & (high[:, 0] >= east)
+        bottom, top = low[there, 1], high[there, 1]
+        if len(top):
+            before = np.maximum.accumulate(np.concatenate([bottom[:1], top[:-1]]))
+            covered += (east - west) * float(np.maximum(top - np.maximum(bottom, before), 0).sum())
+    return covered
 
 
 def _files(

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from wavelet_core import MeshError, TriangleMesh
+from wavelet_core import MeshError, Progress, TriangleMesh
 from wavelet_core.mesh.triangulation import canonical_faces, delaunay_faces
 from wavelet_gis.io.las.cloud_reader import laspy_header, masks_aside, require_laspy
 from wavelet_gis.io.las.dimensions import carried_fields, lifted_attributes
@@ -175,7 +175,9 @@ def ring_of(plan: TilePlan, piece: Piece, u: NDArray[np.int64], v: NDArray[np.in
     )
 
 
-def tile_pyramid(plan: TilePlan, piece: Piece, tile: CloudTile) -> GeoPyramid | None:
+def tile_pyramid(
+    plan: TilePlan, piece: Piece, tile: CloudTile, progress: Progress | None = None
+) -> GeoPyramid | None:
     """Return the pyramid of a tile; None where its points have no surface."""
     if tile.cloud.n_used < 3:
         return None
@@ -200,7 +202,8 @@ def tile_pyramid(plan: TilePlan, piece: Piece, tile: CloudTile) -> GeoPyramid | 
         frame,
         plan.vertical_unit,
     )
-    return analyse(terrain, locked=locked, **plan.options_of(piece, len(vertices))).geo
+    options = plan.options_of(piece, len(vertices))
+    return analyse(terrain, locked=locked, progress=progress, **options).geo
 
 
 def tile_faces(

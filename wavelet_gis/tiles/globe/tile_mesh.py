@@ -27,6 +27,7 @@ __all__ = [
     "joined",
     "on_tile",
     "simplified",
+    "triangulated",
     "with_points",
     "without_slivers",
 ]
@@ -120,7 +121,10 @@ def finest_mesh(
     x = np.concatenate([border.x, inner[first, 0]])
     y = np.concatenate([border.y, inner[first, 1]])
     return TileMesh(
-        x, y, np.concatenate([border.height, height[first]]), _faces(x, y, np.arange(n_border))
+        x,
+        y,
+        np.concatenate([border.height, height[first]]),
+        triangulated(x, y, np.arange(n_border)),
     )
 
 
@@ -155,7 +159,7 @@ def joined(meshes: list[TileMesh], border: Border) -> TileMesh:
     left = whole.with_vertices(keep, place[faces])
     if (left.faces < 0).any() or (_doubled_areas(left.x, left.y, left.faces) <= 0).any():
         ids = _ids_of(left, border)
-        left = left._replace(faces=_faces(left.x, left.y, ids))
+        left = left._replace(faces=triangulated(left.x, left.y, ids))
     return left
 
 
@@ -385,7 +389,7 @@ def _moved(faces: NDArray[np.int64], own: NDArray, vertex: int, target: int) -> 
     return np.concatenate([np.delete(faces, own, axis=0), moved])
 
 
-def _faces(
+def triangulated(
     x: NDArray[np.int64], y: NDArray[np.int64], loop: NDArray[np.int64]
 ) -> NDArray[np.int64]:
     """Return the Delaunay faces with the edges of a loop of vertices."""

@@ -25,6 +25,7 @@ from wavelet_gis.tiles.globe.edges import TileEdges, tile_edges
 from wavelet_gis.tiles.globe.normals import normals_at
 from wavelet_gis.tiles.globe.plan import TilesetPlan, plan_tiles
 from wavelet_gis.tiles.globe.quantized_mesh import QuantizedTile, encoded_tile
+from wavelet_gis.tiles.globe.refinement import refined
 from wavelet_gis.tiles.globe.source import GlobePoints, SourceSurface, source_surface
 from wavelet_gis.tiles.globe.tile_grid import STEPS, Tile, TileRange, ranges_of, tile_width
 from wavelet_gis.tiles.globe.tile_mesh import (
@@ -59,11 +60,8 @@ _SHARE_OF_CHAINS = 0.4
 #: twice as much nothing changes on the same crops (0.2 %); with four times as much 26 % more bytes.
 _SHARE_HANDED_ON = 1 / 16
 
-
-#: Of the time: the surface that tiles are made of.
+#: Of the time: the surface that tiles are made of. And of that for a tile: until its error is kept.
 _SHARE_OF_SOURCE = 0.03
-
-#: Of the time for a tile: the tries until its error is kept.
 _PART_OF_TRIES = 0.8
 
 #: More tiles than this are refused rather than tried: as many as 16 billion points have.
@@ -434,6 +432,12 @@ def _best(
             break
         mesh, kept = with_points(mesh, points[is_above], plan.height_step, kept)
     assert best is not None
+    if is_above.any():
+        last = part_of(progress, _part_after(len(_SHARES)), _PART_OF_TRIES)
+        drawn = refined(best[1], tile, plan.zoom, plan.height_step, promised, points, last)
+        off, errors = _off(drawn, tile, plan, points)
+        tried = *off, int(np.count_nonzero(~(errors <= promised)))
+        best = min(best, (tried, drawn), key=lambda one: one[0])
     report(progress, _PART_OF_TRIES)
     stays = np.zeros(len(mesh.x), dtype=bool)
     handed_on = simplified(mesh, border, tile, plan.height_step, _SHARE_HANDED_ON * promised, stays)
