@@ -121,7 +121,10 @@ class WaveletWarning(UserWarning):
 
 
 class SlowFallbackWarning(WaveletWarning):
-    """Numba is absent, so the work takes two to seven times as long, with the same result."""
+    """Numba is absent, so the work takes two to seven times as long, with the same result.
+
+    To refine a TIN within a tolerance takes 6 to 17 times as long.
+    """
 
 
 class UnstableDesignWarning(WaveletWarning):

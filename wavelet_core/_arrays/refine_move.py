@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._kernels.refine_move import LEAST_GAIN, N_TRIALS
+from .._kernels.refine_move import LEAST_GAIN
 from .outline import is_straight
 from .refine_tin import hand_over, is_wide, largest, stars_of, total, weighed
 
@@ -91,7 +91,7 @@ def _propose(stars, tin, strictness, objective, to, shift, gain):
         moves &= is_straight(stars.x[:, 0], stars.y[:, 0], stars.x[:, -1], stars.y[:, -1])
     q, order_of = _trials(stars, moves, model, stiff, tin, objective)
     threshold = best - LEAST_GAIN * present
-    for t in range(N_TRIALS):
+    for t in range(objective.n_trials):
         _try(stars, q[order_of == t], strictness, present, threshold, objective, to, shift, gain)
 
 

@@ -100,10 +100,10 @@ def count_star_points(start, stop, chosen, tin, points, count):
     count[rows] = counts.sum(axis=1)
 
 
-def sum_face_errors(start, stop, tin, points, objective, error, squared_z, largest_z):
+def sum_face_errors(start, stop, chosen, tin, points, objective, error, squared_z, largest_z):
     corners = tin.mesh.origin.reshape(-1, 3)
-    alive = np.flatnonzero(corners[:, 0] >= 0)
-    error[:], squared_z[:], largest_z[:] = 0.0, 0.0, 0.0
+    alive = chosen[corners[chosen, 0] >= 0]
+    error[chosen], squared_z[chosen], largest_z[chosen] = 0.0, 0.0, 0.0
     for part in blocks(points.n_points[alive] + 1, POINTS_AT_ONCE):
         faces = alive[part]
         a, b, c = corners[faces].T

@@ -155,8 +155,9 @@ def announce_engine(n_vertices: int) -> None:
     if not _announced and not HAS_NUMBA and n_vertices > ANNOUNCED_FROM:
         _announced = True
         warnings.warn(
-            "numba is not installed: the work takes two to seven times as long, with the same "
-            "result; 'pip install numba' speeds it up.",
+            "numba is not installed: the work takes two to seven times as long, and 6 to 17 times "
+            "to refine a TIN within a tolerance, with the same result; 'pip install numba' speeds "
+            "it up.",
             SlowFallbackWarning,
             stacklevel=3,
         )

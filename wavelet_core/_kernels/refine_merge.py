@@ -16,6 +16,7 @@ from ._jit import inlined, kernel
 from .half_edges import after
 from .outline import is_straight
 from .refine_move import find_side, is_open
+from .refine_tin import hand_over
 
 #: Polygons of more sides than this stay as they are: they claim too much of the TIN.
 MAX_RIM = 26
@@ -229,7 +230,7 @@ def merge_edges(start, stop, half_edges, to, base, tin, points, capacity):
     beyond = np.empty(MAX_RIM, np.int32)
     seen_x, seen_y = np.empty(MAX_RIM + 1), np.empty(MAX_RIM + 1)
     near, side = np.empty(capacity, np.int32), np.empty(capacity, np.int32)
-    cursor = np.empty(MAX_RIM, np.int64)
+    faces, cursor = np.empty(MAX_RIM, np.int32), np.empty(MAX_RIM, np.int64)
     for row in range(start, stop):
         half_edge, at = half_edges[row], to[row]
         other = twin[half_edge]
@@ -241,7 +242,6 @@ def merge_edges(start, stop, half_edges, to, base, tin, points, capacity):
         size = list_ring(rim, n_sides, origin, ring)
         for k in range(size):
             seen_x[k], seen_y[k] = x[ring[k]] - x[v], y[ring[k]] - y[v]
-        cursor[:n_sides] = 0
         n = 0
         for k in range(n_sides + 2):
             inner = rim[k] if k < n_sides else half_edge if k == n_sides else other
@@ -253,17 +253,10 @@ def merge_edges(start, stop, half_edges, to, base, tin, points, capacity):
                 px, py = points.x[p] - x[v], points.y[p] - y[v]
                 hint = k if k < n_sides else 0
                 near[n], side[n] = p, find_side(hint, size, n_sides, seen_x, seen_y, px, py)
-                cursor[side[n]] += 1
                 n += 1
-        opening = base[row]
         for k in range(n_sides):
-            face = rim[k] // 3
-            points.first[face], points.n_points[face] = opening, cursor[k]
-            cursor[k] = opening
-            opening += points.n_points[face]
-        for q in range(n):
-            points.pool[cursor[side[q]]] = near[q]
-            cursor[side[q]] += 1
+            faces[k] = rim[k] // 3
+        hand_over(near, side, n, faces, n_sides, base[row], cursor, points)
         # -- a vertex of the rim that names a half-edge within it names one of the fan's
         for k in range(size):
             face = outgoing[ring[k]] // 3

@@ -11,12 +11,8 @@ import numpy as np
 from ._jit import inlined, kernel
 from .half_edges import MAX_RING, walk_ring
 from .outline import is_straight
-from .refine_tin import is_wide, weighed
+from .refine_tin import hand_over, is_wide, weighed
 
-#: Places that are tried at all points of the star. On crops of two DEMs a single one leaves 0.8 to
-#: 1.4 % more RMSE at 2 % and 0.9 to 2.3 % more vertices within a tolerance; 6 change the RMSE by
-#: 0.2 % and leave 0.1 to 2.2 % fewer vertices for a quarter more time.
-N_TRIALS = 3
 #: A vertex moves only where the error of its star falls by more than this part of it. From 0 to
 #: 0.001 the RMSE is the same to 0.03 %, with 0.01 0.5 % more (benchmarks/quality/constants.py).
 LEAST_GAIN = 1e-4
@@ -54,7 +50,7 @@ def find_side(hint, size, n_sides, ring_x, ring_y, x, y):
 def propose_moves(start, stop, chosen, tin, points, objective, capacity, to, shift, gain):
     x, y, z = tin.x, tin.y, tin.z
     origin, twin, outgoing = tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing
-    n_channels = z.shape[1]
+    n_channels, most = z.shape[1], objective.n_trials
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     ring_x, ring_y = np.empty(MAX_RING), np.empty(MAX_RING)
     seen_x, seen_y = np.empty(MAX_RING), np.empty(MAX_RING)
@@ -65,7 +61,7 @@ def propose_moves(start, stop, chosen, tin, points, objective, capacity, to, shi
     near_z = np.empty((capacity, n_channels))
     model = np.empty((n_channels, 9))
     part = np.empty(n_channels)
-    trial, trial_error = np.empty(N_TRIALS, np.int64), np.empty(N_TRIALS)
+    trial, trial_error = np.empty(most, np.int64), np.empty(most)
     rests, pulls, dz = np.empty(n_channels), np.empty(n_channels), np.empty(n_channels)
     for row in range(start, stop):
         v = chosen[row]
@@ -155,16 +151,16 @@ def propose_moves(start, stop, chosen, tin, points, objective, capacity, to, shi
                     expected -= pull * (pull / m[0]) if m[0] > 0.0 else 0.0
                 else:
                     expected += near_z[q, i] * (m[0] * near_z[q, i] - 2.0 * pull)
-            if n_trials == N_TRIALS and expected >= trial_error[N_TRIALS - 1]:
+            if n_trials == most and expected >= trial_error[most - 1]:
                 continue
             if not is_open(dx, dy, size, n_sides, ring_x, ring_y):
                 continue
-            k = min(n_trials, N_TRIALS - 1)
+            k = min(n_trials, most - 1)
             while k > 0 and expected < trial_error[k - 1]:
                 trial[k], trial_error[k] = trial[k - 1], trial_error[k - 1]
                 k -= 1
             trial[k], trial_error[k] = q, expected
-            n_trials = min(n_trials + 1, N_TRIALS)
+            n_trials = min(n_trials + 1, most)
         # -- tried at all points
         threshold = best - LEAST_GAIN * present
         for t in range(n_trials):
@@ -218,7 +214,7 @@ def move_vertices(start, stop, chosen, to, shift, base, tin, points, capacity):
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     seen_x, seen_y = np.empty(MAX_RING), np.empty(MAX_RING)
     near, side = np.empty(capacity, np.int32), np.empty(capacity, np.int32)
-    cursor = np.empty(MAX_RING, np.int64)
+    faces, cursor = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
     for row in range(start, stop):
         v = chosen[row]
         for i in range(z.shape[1]):
@@ -230,22 +226,12 @@ def move_vertices(start, stop, chosen, to, shift, base, tin, points, capacity):
         x[v], y[v] = points.x[to[row]], points.y[to[row]]
         for k in range(size):
             seen_x[k], seen_y[k] = x[ring[k]] - x[v], y[ring[k]] - y[v]
-        cursor[:n_sides] = 0
         n = 0
         for k in range(n_sides):
-            face = spoke[k] // 3
+            faces[k] = face = spoke[k] // 3
             for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 p = points.pool[place]
                 px, py = points.x[p] - x[v], points.y[p] - y[v]
                 near[n], side[n] = p, find_side(k, size, n_sides, seen_x, seen_y, px, py)
-                cursor[side[n]] += 1
                 n += 1
-        opening = base[row]
-        for k in range(n_sides):
-            face = spoke[k] // 3
-            points.first[face], points.n_points[face] = opening, cursor[k]
-            cursor[k] = opening
-            opening += points.n_points[face]
-        for p in range(n):
-            points.pool[cursor[side[p]]] = near[p]
-            cursor[side[p]] += 1
+        hand_over(near, side, n, faces, n_sides, base[row], cursor, points)

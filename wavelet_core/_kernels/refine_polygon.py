@@ -22,7 +22,7 @@ import numpy as np
 from ._jit import inlined, kernel
 from .half_edges import MAX_RING, after, walk_ring
 from .outline import is_straight
-from .refine_tin import is_wide
+from .refine_tin import hand_over, is_wide
 
 #: Vertices with more neighbours than this are left to the collapses. On corners of five DEMs 8
 #: leaves 0.4 % more vertices.
@@ -173,32 +173,22 @@ def lay_polygons(start, stop, chosen, corners, base, tin, points, capacity):
     origin, twin, outgoing = tin.mesh.origin, tin.mesh.twin, tin.mesh.outgoing
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     near, side = np.empty(capacity, np.int32), np.empty(capacity, np.int32)
-    cursor = np.empty(MAX_POLYGON, np.int64)
+    faces, cursor = np.empty(MAX_POLYGON, np.int32), np.empty(MAX_POLYGON, np.int64)
     across = np.empty((MAX_POLYGON, MAX_POLYGON), np.int32)
     at = np.empty(3)
     for row in range(start, stop):
         v = chosen[row]
         size, n_sides = walk_ring(v, origin, twin, outgoing, ring, spoke)
         n_faces = size - 2
-        cursor[:n_faces] = 0
         n = 0
         for k in range(n_sides):
-            face = spoke[k] // 3
+            faces[k] = face = spoke[k] // 3
             for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 p = points.pool[place]
                 near[n] = p
                 side[n] = find_triangle(p, n_faces, corners, row, ring, tin, points, at)
-                cursor[side[n]] += 1
                 n += 1
-        opening = base[row]
-        for t in range(n_faces):
-            face = spoke[t] // 3
-            points.first[face], points.n_points[face] = opening, cursor[t]
-            cursor[t] = opening
-            opening += points.n_points[face]
-        for q in range(n):
-            points.pool[cursor[side[q]]] = near[q]
-            cursor[side[q]] += 1
+        hand_over(near, side, n, faces, n_faces, base[row], cursor, points)
         # -- across[i, k]: what the triangle on the side from i to k meets there
         for k in range(size):
             following = k + 1 if k + 1 < size else 0

@@ -6,7 +6,7 @@ from ._jit import inlined, kernel
 from .half_edges import MAX_RING, after, before, walk_ring
 from .outline import is_straight
 from .refine_move import find_side
-from .refine_tin import is_wide, weighed
+from .refine_tin import hand_over, is_wide, weighed
 
 #: Points of a face that are tried as a vertex: those of the largest errors. One, two and eight of
 #: them leave the same RMSE to 0.1 % (benchmarks/quality/constants.py).
@@ -119,7 +119,7 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
     ring, spoke = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int32)
     seen_x, seen_y = np.empty(MAX_RING), np.empty(MAX_RING)
     near, side = np.empty(capacity, np.int32), np.empty(capacity, np.int32)
-    cursor = np.empty(MAX_RING, np.int64)
+    faces, cursor = np.empty(MAX_RING, np.int32), np.empty(MAX_RING, np.int64)
     for row in range(start, stop):
         v, j = chosen[row], target[row]
         size, n_sides = walk_ring(v, origin, twin, outgoing, ring, spoke)
@@ -127,7 +127,6 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
         for t in range(size - 1):
             k = (j + 1 + t) % size
             seen_x[t], seen_y[t] = x[ring[k]] - x[a], y[ring[k]] - y[a]
-        cursor[: size - 2] = 0
         n = 0
         for k in range(n_sides):
             face = spoke[k] // 3
@@ -138,17 +137,10 @@ def remove_vertices(start, stop, chosen, target, base, tin, points, capacity, fr
                 side[n] = find_side(
                     fan_place(k, j, size), size - 1, size - 2, seen_x, seen_y, px, py
                 )
-                cursor[side[n]] += 1
                 n += 1
-        opening = base[row]
         for t in range(size - 2):
-            face = spoke[(j + 1 + t) % size] // 3
-            points.first[face], points.n_points[face] = opening, cursor[t]
-            cursor[t] = opening
-            opening += points.n_points[face]
-        for q in range(n):
-            points.pool[cursor[side[q]]] = near[q]
-            cursor[side[q]] += 1
+            faces[t] = spoke[(j + 1 + t) % size] // 3
+        hand_over(near, side, n, faces, size - 2, base[row], cursor, points)
         # -- the faces on either side of the edge to a go, the others take a for v
         is_outline = n_sides < size
         gone_after = -1 if is_outline and j > 0 else spoke[j]
@@ -254,9 +246,12 @@ def propose_insertions(start, stop, faces, tin, points, objective, point, on_edg
                             weight = min(weight, at[k] * share[k])
                     weight = max(weight, 0.0)
                     squares += weight * weight
+                    if objective.is_free:
+                        for i in range(n_channels):
+                            pull[i] += weight * off[i]
+                        continue
                     before_it, after_it = 0.0, 0.0
                     for i in range(n_channels):
-                        pull[i] += weight * off[i]
                         before_it += off[i] * off[i]
                         changed = off[i] - weight * (surface[i] - points.z[q, i])
                         after_it += changed * changed
@@ -361,7 +356,6 @@ def insert_vertices(
             slot[0], slot[1], slot[2], slot[3] = face, free[row, 0], second, free[row, 1]
         for k in range(size):
             seen_x[k], seen_y[k] = x[rim[k]] - x[v], y[rim[k]] - y[v]
-        cursor[:] = 0
         n = 0
         for half in range(2):
             here = face if half == 0 else second
@@ -371,16 +365,8 @@ def insert_vertices(
                 p = points.pool[place]
                 px, py = points.x[p] - x[v], points.y[p] - y[v]
                 near[n], side[n] = p, find_side(0, size, size, seen_x, seen_y, px, py)
-                cursor[side[n]] += 1
                 n += 1
-        opening = base[row]
-        for k in range(size):
-            points.first[slot[k]], points.n_points[slot[k]] = opening, cursor[k]
-            cursor[k] = opening
-            opening += points.n_points[slot[k]]
-        for q in range(n):
-            points.pool[cursor[side[q]]] = near[q]
-            cursor[side[q]] += 1
+        hand_over(near, side, n, slot, size, base[row], cursor, points)
         # -- faces (rim[k], rim[k + 1], v)
         for k in range(size):
             f, following = 3 * slot[k], (k + 1) % size

@@ -58,12 +58,14 @@ class Objective(NamedTuple):
     is_free : bool, whether heights are fitted; else a vertex has those of its point
     tolerance : float, the largest squared height error that is legal, times the point's strictness
     reach : float, squared distance that a vertex may move at once
+    n_trials : int, how many places of a vertex are tried at all points of its star
     """
 
     is_power: bool
     is_free: bool
     tolerance: float
     reach: float
+    n_trials: int
 
 
 # What an error counts for, given its square
@@ -90,13 +92,14 @@ def count_star_points(start, stop, chosen, tin, points, count):
             count[row] += points.n_points[spoke[k] // 3]
 
 
-# error, squared_z, largest (n_faces,) float64, filled: what the errors in each face count for, the
-# sum of the squares of those in height, and the largest of these
+# Filled for the faces chosen (k,) int64, all of shape (n_faces,) float64: error, what the errors in
+# each count for; squared_z, the sum of the squares of those in height; and the largest of these
 @kernel
-def sum_face_errors(start, stop, tin, points, objective, error, squared_z, largest):
+def sum_face_errors(start, stop, chosen, tin, points, objective, error, squared_z, largest):
     x, y, z, origin = tin.x, tin.y, tin.z, tin.mesh.origin
     n_channels = z.shape[1]
-    for face in range(start, stop):
+    for row in range(start, stop):
+        face = chosen[row]
         error[face], squared_z[face], largest[face] = 0.0, 0.0, 0.0
         a, b, c = origin[3 * face], origin[3 * face + 1], origin[3 * face + 2]
         if a < 0:
@@ -163,6 +166,23 @@ def copy_lists(start, stop, points, first, pool):
     for face in range(start, stop):
         for k in range(points.n_points[face]):
             pool[first[face] + k] = points.pool[points.first[face] + k]
+
+
+# Write the lists of n_faces faces anew, side by side in the pool from `opening` on: of near (n,)
+# int32 each point goes to faces[side], side (n,) int32. cursor (>= n_faces,) int64: room to count
+@inlined
+def hand_over(near, side, n, faces, n_faces, opening, cursor, points):
+    for k in range(n_faces):
+        cursor[k] = 0
+    for q in range(n):
+        cursor[side[q]] += 1
+    for k in range(n_faces):
+        points.first[faces[k]], points.n_points[faces[k]] = opening, cursor[k]
+        opening += cursor[k]
+        cursor[k] = points.first[faces[k]]
+    for q in range(n):
+        points.pool[cursor[side[q]]] = near[q]
+        cursor[side[q]] += 1
 
 
 # Is the face of these corners wide enough, and counter-clockwise?

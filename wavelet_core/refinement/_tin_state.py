@@ -41,6 +41,7 @@ from .._kernels.refine_tin import (
 from .._validate import FloatArray, IntArray
 from ..mesh.half_edges import half_edges_of
 from ..partition._level_state import scattered
+from ._known import FaceErrors, Known
 
 #: Vertices with more neighbours than this are not taken out: they claim too much of the TIN. On
 #: three DEMs 10 leaves up to 0.3 % more vertices within a tolerance, 25 as many.
@@ -50,14 +51,6 @@ MAX_REMOVED_RING = 15
 ROOM = 3
 
 IndexArray = NDArray[np.int32]
-
-
-class FaceErrors(NamedTuple):
-    """Of each face: what its errors count for, the sum of squared height errors, their largest."""
-
-    error: FloatArray
-    squared_z: FloatArray
-    largest: FloatArray
 
 
 class _Removals(NamedTuple):
@@ -132,10 +125,22 @@ class TinState:
         pool[: len(listed)] = listed
         strict = np.ones(len(x)) if strictness is None else strictness
         self.points = Points(x, y, columns, strict, np.cumsum(count) - count, count, pool)
-        self.objective = objective
+        self._objective = objective
+        self._known = Known.nothing(len(faces))
         self._n_used = len(listed)
         self._key = scattered(len(vertex_ids))
         self._lives = np.ones(len(vertex_ids), dtype=bool)
+
+    @property
+    def objective(self) -> Objective:
+        """What is made small; with another one nothing is known of the TIN."""
+        return self._objective
+
+    @objective.setter
+    def objective(self, objective: Objective) -> None:
+        if objective != self._objective:
+            self._objective = objective
+            self._known = Known.nothing(len(self.points.first))
 
     @property
     def n_vertices(self) -> int:
@@ -151,17 +156,21 @@ class TinState:
             first=self.points.first.copy(), n_points=self.points.n_points.copy()
         )
         twin._lives = self._lives.copy()
+        twin._known = Known.nothing(len(self.points.first))
         return twin
 
     # -- what there is ---------------------------------------------------------------------------
 
     def face_errors(self) -> FaceErrors:
-        """Return the errors of all faces."""
-        errors = FaceErrors(*(np.empty(len(self.points.first)) for _ in range(3)))
+        """Return the errors of all faces, as they are until the next change."""
+        known = self._known
+        chosen = np.flatnonzero(known.has_new_error)
         run_in_ranges(
-            sum_face_errors, len(self.points.first), self.tin, self.points, self.objective, *errors
-        )
-        return errors
+            sum_face_errors, len(chosen), chosen, self.tin, self.points, self.objective,
+            *known.errors,
+        )  # fmt: skip
+        known.has_new_error[:] = False
+        return known.errors
 
     def faces(self) -> tuple[IntArray, IntArray, IntArray]:
         """Return the slots of the vertices and of the faces, and the faces by the former."""
@@ -215,6 +224,7 @@ class TinState:
         moves = to >= 0
         base = self._room_for(np.where(moves, counts, 0))
         run_in_ranges(move_vertices, n, chosen, to, shift, base, self.tin, self.points, capacity)
+        self._known.has_new_error[:] = self._known.has_new_edges[:] = True
         return int(np.count_nonzero(moves))
 
     def _star_points(self, chosen: IndexArray) -> IntArray:
@@ -226,17 +236,10 @@ class TinState:
 
     def flip(self, n_passes: int) -> int:
         """Turn edges that lie better the other way, the best first; return how many."""
-        mesh = self.tin.mesh
-        half_edges = np.flatnonzero(mesh.twin > np.arange(len(mesh.twin))).astype(np.int32)
-        gains = np.zeros(len(mesh.twin))
+        mesh, gains = self.tin.mesh, self._known.gains
         n_flipped = 0
         for _ in range(n_passes):
-            gain = np.empty(len(half_edges))
-            run_in_ranges(
-                gains_of_flips, len(half_edges), half_edges, self.tin, self.points, self.objective,
-                self.face_errors().error, gain,
-            )  # fmt: skip
-            gains[half_edges] = gain
+            self._judge_edges()
             chosen = self._apart(np.flatnonzero(gains > 0.0).astype(np.int32), gains)
             if len(chosen) == 0:
                 break
@@ -244,13 +247,26 @@ class TinState:
             base = self._room_for(self.points.n_points[faces].sum(axis=1))
             run_in_ranges(flip_edges, len(chosen), chosen, base, self.tin, self.points)
             n_flipped += len(chosen)
-            around = (3 * faces.reshape(-1, 1) + np.arange(3)).ravel()
-            beyond = mesh.twin[around]
-            gains[around] = 0.0
-            gains[beyond[beyond >= 0]] = 0.0
-            lower = np.minimum(around, beyond)
-            half_edges = np.unique(lower[lower >= 0]).astype(np.int32)
+            self._known.change(faces)
         return n_flipped
+
+    def _judge_edges(self) -> None:
+        """Work out what the edges of changed faces gain where they are turned."""
+        twin, known = self.tin.mesh.twin, self._known
+        around = (3 * np.flatnonzero(known.has_new_edges)[:, None] + np.arange(3)).ravel()
+        beyond = twin[around]
+        known.gains[around] = 0.0
+        known.gains[beyond[beyond >= 0]] = 0.0
+        is_judged = np.zeros(len(twin), dtype=bool)
+        is_judged[np.minimum(around, beyond)[beyond >= 0]] = True
+        half_edges = np.flatnonzero(is_judged).astype(np.int32)
+        gain = np.empty(len(half_edges))
+        run_in_ranges(
+            gains_of_flips, len(half_edges), half_edges, self.tin, self.points, self.objective,
+            self.face_errors().error, gain,
+        )  # fmt: skip
+        known.gains[half_edges] = gain
+        known.has_new_edges[:] = False
 
     def _apart(self, half_edges: IndexArray, gains: FloatArray) -> IndexArray:
         """Return edges whose quadrangles have no vertex in common."""
@@ -290,12 +306,14 @@ class TinState:
         list_corners(0, n, wanted.face[ins], wanted.on_edge[ins], self.tin.mesh, corners)
         order = np.arange(2 * n).reshape(2, n).T.ravel()  # in turns
         wins = self._first(order, np.vstack([spare.needs[outs], corners]))
-        outs, ins = outs[wins[:n]], ins[wins[n:]]
+        came = wins[n:]
+        outs, ins = outs[wins[:n]], ins[came]
         n = min(len(outs), len(ins))
         outs, ins = outs[:n], ins[:n]
         vertex = spare.vertex[outs]
         freed = self._remove(vertex, spare.target[outs], spare.capacity)
         self._insert(_Insertions._make(array[ins] for array in wanted), vertex, freed)
+        self._change_around(np.vstack([spare.needs[outs], corners[came][:n]]))
         return n
 
     def thin(self, budget: float = np.inf) -> int:
@@ -311,6 +329,7 @@ class TinState:
         order = np.sort(order[wins[order]])
         vertex = spare.vertex[order]
         self._remove(vertex, spare.target[order], spare.capacity)
+        self._change_around(spare.needs[order])
         self._lives[vertex] = False
         return len(vertex)
 
@@ -332,12 +351,14 @@ class TinState:
         found = np.flatnonzero(cost < np.inf)
         needs = np.empty((len(found), MAX_POLYGON + 1), dtype=np.int32)
         run_in_ranges(list_stars, len(found), vertex[found], tin.mesh, needs)
-        chosen = found[self._cheapest_apart(cost[found], needs)]
+        apart = self._cheapest_apart(cost[found], needs)
+        chosen = found[apart]
         base = self._room_for(counts[chosen])
         run_in_ranges(
             lay_polygons, len(chosen), vertex[chosen], corners[chosen], base, tin, self.points,
             capacity,
         )  # fmt: skip
+        self._change_around(needs[apart])
         self._lives[vertex[chosen]] = False
         return len(chosen)
 
@@ -369,8 +390,16 @@ class TinState:
             merge_edges, len(chosen), half_edges[chosen], to[chosen], base, self.tin, self.points,
             capacity,
         )  # fmt: skip
+        self._change_around(needs[apart])
         self._lives[gone] = False
         return len(chosen)
+
+    def _change_around(self, vertices: IndexArray) -> None:
+        """Note that faces may be other ones, or gone, all whose corners are among these or -1."""
+        is_one = np.zeros(len(self._lives) + 1, dtype=bool)
+        is_one[vertices] = is_one[-1] = True
+        inside = is_one[self.tin.mesh.origin].reshape(-1, 3).all(axis=1)
+        self._known.change(np.flatnonzero(inside))
 
     def _cheapest_apart(self, cost: FloatArray, needs: IndexArray) -> IntArray:
         """Return, ascending, the cheapest rows that need no vertex of a cheaper one."""

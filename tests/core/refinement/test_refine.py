@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 from wavelet_core import Cancelled, MeshError, OptionError, TriangleMesh, analyse, refine, synthetic
 from wavelet_core._kernels._jit import HAS_NUMBA, THREADS_VARIABLE, engine
 from wavelet_core.metrics import surface_errors
+from wavelet_core.refinement._tin_state import TinState
 from wavelet_core.refinement.finish import finished_within
 
 ORACLE = "compiled" if HAS_NUMBA else "loops"
@@ -89,6 +90,45 @@ def test_engines_give_the_same_bytes(mesh_name, task):
             arrays = (refined.mesh.vertices, refined.mesh.attributes, refined.mesh.faces)
             outcomes.append([*(a.tobytes() for a in arrays), refined.rounds])
     assert outcomes[0] == outcomes[1]
+
+
+@pytest.mark.parametrize("task", ["rms", "kept points", "largest error"])
+@pytest.mark.parametrize("mesh_name", MESHES)
+def test_coarse_tins_get_more_rounds_alike_on_each_engine(mesh_name, task):
+    mesh = MESHES[mesh_name]()
+    options, analysis = TASKS[task]
+    pyramid = analyse(mesh, target_vertices=mesh.n_vertices // 20, **analysis)
+    coarse, ids, outcomes = pyramid.mesh(0), pyramid.vertex_ids(0), []
+    for name in (ORACLE, "arrays"):
+        with engine(name):
+            refined = refine(coarse, mesh, ids, **options)
+            short = refine(coarse, mesh, ids, rounds=3, **options)
+        outcomes.append((refined.mesh.vertices.tobytes(), refined.mesh.faces.tobytes()))
+        assert len(refined.rounds) <= 12  # as given, 10 of them, and the fit
+        assert [here.rmse for here in refined.rounds[:3]] == [h.rmse for h in short.rounds[:3]]
+    assert outcomes[0] == outcomes[1]
+
+
+@pytest.mark.parametrize("mesh_name", MESHES)
+def test_what_is_known_of_a_tin_is_what_it_is_found_to_be_anew(mesh_name, monkeypatch):
+    """Errors and gains are worked out where something has changed; elsewhere they have to hold."""
+    change = TinState._change_around
+
+    def judged(state, vertices):
+        change(state, vertices)
+        anew = state.snapshot()
+        for tin in (state, anew):
+            tin._judge_edges()
+        np.testing.assert_array_equal(state._known.gains, anew._known.gains)
+        for known, found in zip(state.face_errors(), anew.face_errors(), strict=True):
+            np.testing.assert_array_equal(known, found)
+        n_judged.append(1)
+
+    monkeypatch.setattr(TinState, "_change_around", judged)
+    for task in TASKS:
+        n_judged = []
+        coarse_and_refined(MESHES[mesh_name](), task)
+        assert n_judged or task not in ("tolerance", "mean tolerance")
 
 
 @pytest.mark.parametrize("mesh_name", MESHES)
