@@ -208,13 +208,17 @@ class TilesInput(TerrainWaveletsAlgorithm):
     def read(self, work: Work) -> Any:
         """Return a function that reads part of a raster, as `wavelet_gis.io.raster.read_dem`."""
         from wavelet_gis.crs.frame import Georeference
+        from wavelet_gis.errors import InputFileError
 
         from ..qgis_io.raster_reader import read_window
 
         of_path = {os.path.abspath(str(raster.path)): raster for raster in self.rasters}
 
         def read(path: str, *, window: CellWindow, **options: Any) -> tuple[Dem, Georeference]:
-            return read_window(of_path[path], path, window, work), Georeference(None, None)
+            try:
+                return read_window(of_path[path], path, window, work), Georeference(None, None)
+            except QgsProcessingException as error:  # that tile is set aside, the others are made
+                raise InputFileError(str(error)) from error
 
         return read
 

@@ -224,6 +224,17 @@ def test_a_tile_that_cannot_be_made_is_told(run, dem, tmp_path, monkeypatch):
     assert any("set aside" in line for line in log.warnings)
 
 
+def test_tiles_of_a_damaged_file_are_set_aside(run, dem, tmp_path):
+    damaged = tmp_path / "cut.tif"
+    damaged.write_bytes(Path(dem).read_bytes()[:-15_000])  # of 43,200: the last third of the rows
+    log = Log()
+    parameters = {"RASTERS": [str(damaged)], "TILE": 45, "OUTPUT": str(tmp_path / "set")}
+    made = run("tileterrain", parameters, feedback=log)
+    assert made["N_FAILED"] == 3
+    assert made["N_MADE"] == 9
+    assert any("the file is damaged" in line for line in log.lines)
+
+
 @pytest.mark.parametrize(
     ("parameters", "told"),
     [
