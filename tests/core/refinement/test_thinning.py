@@ -27,7 +27,7 @@ def state_of(mesh, original, ids, max_error, locked=None):
     columns = np.hstack([original.vertices[:, 2:], original.attributes])
     return TinState(
         original.vertices[:, :2], columns, columns[ids], mesh.faces.astype(np.int32), ids, face_of,
-        locked, Objective(False, False, max_error**2, np.inf),
+        locked, Objective(False, False, max_error**2, np.inf, 3),
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[3]
 MODULES = sorted((ROOT / "plugin").rglob("*.py"))
 
 #: Asked of QGIS before 3.38 only, whose Qt is 5.
-OF_OLD_QGIS = {"QVariant.Int", "QVariant.Double"}
+OF_OLD_QGIS = {"QVariant.Int", "QVariant.LongLong", "QVariant.Double"}
 
 #: Makes a stand-in for QGIS: any name is a class, any attribute of it another one.
 STUB = """
