@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 import shutil
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
@@ -39,8 +39,8 @@ SHARE_KEPT = 2.5 * SHARE_HANDED_ON
 #: What reading a damaged file raises; an array by itself is no context.
 _DAMAGE = (OSError, EOFError, ValueError, KeyError, TypeError, BadZipFile, PyramidError)
 
-#: Arrays of a step, as `wavelet_core.lifting.step.Step` names them.
-_OF_STEP = ("odd", "target", "indptr", "indices", "weights", "details")
+#: Arrays of a step.
+_OF_STEP = tuple(field.name for field in fields(Step))
 
 
 def keep_levels(folder: str | os.PathLike[str], name: str, checksum: str, pyramid: Pyramid) -> None:

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from wavelet_core import TriangleMesh
+from wavelet_core._validate import distinct
 from wavelet_core.mesh.connectivity import edges_of
 from wavelet_core.mesh.location import cover_of
 
@@ -44,11 +45,11 @@ def graded(mesh: TriangleMesh, sizes: FloatArray, grading: float) -> FloatArray:
         edges of the terrain and across them, shortened so that on a grid none is overrated.
     """
     pairs = np.concatenate([edges_of(mesh.faces)[0], _across_edges(mesh.faces)]).astype(np.int64)
-    pairs = np.unique(np.sort(pairs, axis=1), axis=0)
-    plan = mesh.vertices[:, :2]
+    plan, n = mesh.vertices[:, :2], mesh.n_vertices
+    pairs = np.column_stack(divmod(distinct(pairs.min(axis=1) * n + pairs.max(axis=1)), n))
     lengths = np.linalg.norm(plan[pairs[:, 0]] - plan[pairs[:, 1]], axis=1) / _DETOUR
     known = np.flatnonzero(np.isfinite(sizes))
-    n = mesh.n_vertices  # one more node, from which every size is as far as it takes to grow to it
+    # One more node, from which every size is as far as it takes to grow to it.
     graph = coo_matrix(
         (
             np.concatenate([lengths, sizes[known] / grading]),
