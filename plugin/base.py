@@ -189,12 +189,15 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         from wavelet_core.errors import Cancelled, WaveletError
         from wavelet_gis.notes import collected
 
+        from .parameters.output_check import ChosenFiles
+
+        files = ChosenFiles(self, parameters)
+        results: Values | None = None
         try:
             with shown_in(request.feedback, self.in_words), collected() as notes:
                 results = self.work(request)
         except Cancelled:
-            request.say(tr("Cancelled; nothing was written."))
-            return {}
+            pass  # what the work holds open is closed behind this
         except WaveletError as error:
             raise QgsProcessingException(dependencies.with_remedy(self.in_words(error))) from error
         except MemoryError as error:
@@ -204,8 +207,16 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
                     "needed). Cut it, or take a coarser one."
                 )
             ) from error
+        if results is None:
+            files.take_back()
+            request.say(self.cancelled())
+            return {}
         self._log_notes(request, notes)
         return results
+
+    def cancelled(self) -> str:
+        """Return what is told after a cancel."""
+        return tr("Cancelled; nothing was written.")
 
     def work(self, request: Request) -> Values:
         """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""

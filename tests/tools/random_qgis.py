@@ -405,6 +405,7 @@ def main() -> None:
         "TMPDIR": str(folder / "temporary"),
         "LC_ALL": "C.UTF-8",
         "PYTHONFAULTHANDLER": "1",
+        "GDAL_CACHEMAX": "64",  # megabytes; else blocks of rasters fill a twentieth of the memory
     }
     environment.pop("PYTHONPATH", None)
     until, log, deaths = time.time() + 60 * options.minutes, folder / "log.jsonl", []
