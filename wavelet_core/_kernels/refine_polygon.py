@@ -93,6 +93,8 @@ def propose_polygons(start, stop, chosen, tin, points, objective, error, capacit
                             break
                         if turn >= 0:
                             total += squared
+                            if total >= least[i, k]:
+                                break
                     if total < least[i, k]:
                         least[i, k], middle[i, k] = total, j
         if not least[0, size - 1] < np.inf:
