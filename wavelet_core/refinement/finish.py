@@ -22,8 +22,8 @@ from .refine import COARSE, Round, refine
 NEEDED = ("norm", "max_error", "max_rms", "update", "signal", "partition")
 
 
-#: A coarse TIN is refined from a level of so many times its vertices on.
-HEAD_START = 2.0
+#: A coarse TIN is refined from a level of at least so many times its vertices on.
+HEAD_START = 1.8
 
 
 class FinishedTin(NamedTuple):
