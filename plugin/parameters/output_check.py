@@ -1,4 +1,4 @@
-"""Outputs looked at before the long work: refused at once, or taken back where it is cancelled."""
+"""Outputs looked at before the long work: refused at once, or taken back where it fails."""
 
 from __future__ import annotations
 

@@ -126,6 +126,53 @@ class TestCancelledBetweenOutputs:
         assert results == {}
         assert list(tmp_path.iterdir()) == []
 
+    def test_what_was_written_before_a_refusal_goes_too(self, qgis, pyramid, tmp_path, monkeypatch):
+        from qgis.core import QgsProcessingContext
+
+        from wavelet_core.errors import WaveletError
+        from wavelet_gis.workflows.extract import Surface
+
+        def failing(*arguments, **options):
+            raise WaveletError("the outline meets itself.")
+
+        monkeypatch.setattr(Surface, "write", failing)
+        tin, mesh = tmp_path / "tin.gpkg", tmp_path / "mesh.2dm"
+        algorithm = qgis.processingRegistry().algorithmById("terrainwavelets:extractlevel").create()
+        parameters = {"INPUT": pyramid, "LEVEL": 2, "TIN": str(tin), "MESH": str(mesh)}
+        log = Log()
+        _, is_done = algorithm.run(parameters, QgsProcessingContext(), log)
+        assert not is_done
+        assert log.errors == ["The outline meets itself."]
+        assert list(tmp_path.iterdir()) == []
+
+    def test_a_refusal_leaves_nothing_in_memory(self, qgis, pyramid, monkeypatch):
+        import gc
+        import weakref
+
+        from qgis.core import QgsProcessingContext
+
+        from wavelet_core.errors import WaveletError
+        from wavelet_gis.workflows import extract
+
+        held = []
+
+        class Large:
+            pass
+
+        def failing(*arguments, **options):
+            in_the_frame = Large()
+            held.append(weakref.ref(in_the_frame))
+            raise WaveletError("no.")
+
+        monkeypatch.setattr(extract, "extract", failing)
+        algorithm = qgis.processingRegistry().algorithmById("terrainwavelets:extractlevel").create()
+        parameters = {"INPUT": pyramid, "LEVEL": 2, "RASTER": "TEMPORARY_OUTPUT"}
+        _, is_done = algorithm.run(parameters, QgsProcessingContext(), Log())
+        assert not is_done
+        gc.collect()
+        assert len(held) == 1
+        assert held[0]() is None
+
     def test_a_table_in_a_database_of_the_user_leaves_the_database(self, qgis, pyramid, tmp_path):
         import sqlite3
 
