@@ -23,7 +23,7 @@ NEEDED = ("norm", "max_error", "max_rms", "update", "signal", "partition")
 
 
 #: A coarse TIN is refined from a level of at least so many times its vertices on.
-HEAD_START = 1.8
+HEAD_START = 2.0
 
 
 class FinishedTin(NamedTuple):
