@@ -189,23 +189,39 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         from wavelet_core.errors import Cancelled, WaveletError
         from wavelet_gis.notes import collected
 
+        from .parameters.output_check import ChosenFiles
+
+        files = ChosenFiles(self, parameters)
+        results: Values | None = None
+        refusal = ""
         try:
             with shown_in(request.feedback, self.in_words), collected() as notes:
                 results = self.work(request)
         except Cancelled:
-            request.say(tr("Cancelled; nothing was written."))
-            return {}
+            pass
         except WaveletError as error:
-            raise QgsProcessingException(dependencies.with_remedy(self.in_words(error))) from error
-        except MemoryError as error:
-            raise QgsProcessingException(
-                tr(
-                    "There is not enough memory for this input (some 700 bytes a vertex are "
-                    "needed). Cut it, or take a coarser one."
-                )
-            ) from error
+            refusal = dependencies.with_remedy(self.in_words(error))
+        except MemoryError:
+            refusal = tr(
+                "There is not enough memory for this input (some 700 bytes a vertex are "
+                "needed). Cut it, or take a coarser one."
+            )
+        except QgsProcessingException as error:
+            refusal = str(error)
+        # Here what the work held is closed and gone, which a traceback would have kept for QGIS.
+        if results is None:
+            files.take_back()
+        if refusal:
+            raise QgsProcessingException(refusal)
+        if results is None:
+            request.say(self.cancelled())
+            return {}
         self._log_notes(request, notes)
         return results
+
+    def cancelled(self) -> str:
+        """Return what is told after a cancel."""
+        return tr("Cancelled; nothing was written.")
 
     def work(self, request: Request) -> Values:
         """Do the work and return the outputs; ours to raise are the errors of ``wavelet_core``."""

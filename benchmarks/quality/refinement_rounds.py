@@ -3,7 +3,8 @@
 usage: python benchmarks/quality/refinement_rounds.py DEM[:ROW,COLUMN,SIZE] ... [--keep 0.1,0.02]
 
 Of each DEM, or a square of it, processor seconds of the analysis and of the refinement, and the
-RMSE at all nodes as analysed and after each round, as a share of that of fitted heights. Degrees
+RMSE at all nodes as analysed and after each round, as a share of that of the coarsest level with
+fitted heights; where a round has more vertices than the end, by how many times is said. Degrees
 are taken as metres by their length in the middle of the DEM. A small input runs first, so that
 nothing is compiled in what is timed.
 """
@@ -18,7 +19,7 @@ import numpy as np
 import rasterio
 from rasterio.windows import Window
 
-from wavelet_core import TriangleMesh, analyse, fitted, refine, synthetic
+from wavelet_core import TriangleMesh, analyse, finished, fitted, synthetic
 from wavelet_core.metrics import surface_errors
 
 #: Metres of a degree of latitude.
@@ -44,6 +45,11 @@ def mesh_of(text: str) -> TriangleMesh:
     return TriangleMesh.from_grid(z, x=np.arange(columns) * dx, y=np.arange(rows) * dy, valid=valid)
 
 
+def times(ratio: float) -> str:
+    """Return by how many times there are more vertices than in the end."""
+    return f" (×{ratio:.2f})" if ratio > 1 else ""
+
+
 def main() -> None:
     """Print a row for each DEM and size."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -51,7 +57,7 @@ def main() -> None:
     parser.add_argument("--keep", default="0.1,0.02", help="parts of the vertices")
     options = parser.parse_args()
     small = synthetic.hills(150, 150)
-    refine((first := analyse(small, target_vertices=900)).mesh(0), small, first.vertex_ids(0))
+    finished(analyse(small, target_vertices=900), small)
     print("| DEM | nodes | kept | analysis, s | refinement, s | as analysed, then by round |")
     print("|---|---|---|---|---|---|")
     for text in options.dems:
@@ -60,12 +66,14 @@ def main() -> None:
             began = process_time()
             pyramid = analyse(dem, target_vertices=round(keep * dem.n_vertices))
             analysed = process_time()
-            coarse, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
-            between = process_time()
-            found = refine(coarse, dem, ids)
-            seconds = analysed - began, process_time() - between
-            rmse = math.sqrt(np.nanmean(surface_errors(fitted(coarse, dem), dem.vertices) ** 2))
-            rounds = " ".join(f"{here.rmse / rmse:.3f}" for here in found.rounds)
+            found = finished(pyramid, dem)
+            seconds = analysed - began, process_time() - analysed
+            coarse = fitted(pyramid.mesh(0), dem)
+            rmse = math.sqrt(np.nanmean(surface_errors(coarse, dem.vertices) ** 2))
+            rounds = " ".join(
+                f"{here.rmse / rmse:.3f}{times(here.n_vertices / coarse.n_vertices)}"
+                for here in found.rounds
+            )
             print(
                 f"| {text} | {dem.n_vertices:,} | {100 * keep:g} % | {seconds[0]:.1f} "
                 f"| {seconds[1]:.1f} | {rounds} |",

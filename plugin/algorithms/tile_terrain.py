@@ -156,6 +156,12 @@ class TileTerrain(TilesInput):
             "N_FAILED": len(figures["failed"]),
         }
 
+    def cancelled(self) -> str:
+        """Return what is told after a cancel: what was made stays."""
+        return tr(
+            "Cancelled; the tiles that were made stay, and the same parameters go on from there."
+        )
+
     def _add_to_map(self, request: Request, index: str) -> None:
         project = request.context.project()
         if not request.flag("ADD_TO_MAP") or project is None:

@@ -2430,6 +2430,11 @@
   </message>
   <message>
     <location filename="../../plugin/algorithms/tile_terrain.py"/>
+    <source>Cancelled; the tiles that were made stay, and the same parameters go on from there.</source>
+    <translation type="unfinished"></translation>
+  </message>
+  <message>
+    <location filename="../../plugin/algorithms/tile_terrain.py"/>
     <source>Folder of tiles</source>
     <translation type="unfinished"></translation>
   </message>

@@ -1,7 +1,8 @@
-"""Outputs looked at before the long work, so that a refusal comes at once and not after an hour."""
+"""Outputs looked at before the long work: refused at once, or taken back where it fails."""
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from typing import TYPE_CHECKING, Any
@@ -45,6 +46,34 @@ def check_outputs(
             if isinstance(definition, QgsProcessingParameterFileDestination):
                 suffixes = tuple(re.findall(r"\*(\.\w+)", definition.fileFilter()))
             check_output(path, overwrite=True, suffixes=suffixes, inputs=inputs)
+
+
+class ChosenFiles:
+    """The files that a user chose for outputs, and whether they were there before the run."""
+
+    def __init__(self, algorithm: QgsProcessingAlgorithm, parameters: dict[str, Any]) -> None:
+        self._before: dict[str, tuple[int, int] | None] = {}
+        for definition in algorithm.destinationParameterDefinitions():
+            path = _chosen_file(definition, parameters.get(definition.name()))
+            if path is not None and definition.type() != "folderDestination":
+                self._before[path] = _state_of(path)
+
+    def take_back(self) -> None:
+        """Remove what the run has written, were it whole: half of the outputs is no result."""
+        for path, before in self._before.items():
+            if _state_of(path) not in (None, before):
+                for name in (path, f"{path}.aux.xml"):
+                    with contextlib.suppress(OSError):
+                        os.unlink(name)
+
+
+def _state_of(path: str) -> tuple[int, int] | None:
+    """Return what tells a file from the one that it was; None where there is none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
 
 
 def _chosen_file(definition: QgsProcessingParameterDefinition, value: Any) -> str | None:

@@ -166,9 +166,12 @@ def computed(
             work.is_left = True
             raise
     work.pass_on()
-    is_fine, result = work.outcome[0]
+    is_fine, result = work.outcome.pop()
     if not is_fine:
-        raise result
+        try:
+            raise result
+        finally:
+            del result  # it would hold itself, and all that the work held, by this frame
     feedback.setProgress(100.0 * stop)
     return result
 

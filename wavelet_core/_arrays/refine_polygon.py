@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._kernels.refine_polygon import MAX_POLYGON, WITHIN
+from .._kernels.refine_polygon import MAX_POLYGON, N_JUDGES, WITHIN
 from ._csr import summed
 from .half_edges import after
 from .outline import is_straight
@@ -43,6 +43,11 @@ def propose_polygons(start, stop, chosen, tin, points, objective, error, capacit
 def _best_parts(stars, legal, tin, points, objective):
     """Return what the best triangles of each whole ring cost, and where each part is split."""
     n, size = stars.ring.shape
+    count = np.bincount(stars.row, minlength=n)
+    place = np.arange(len(stars.row)) - (np.cumsum(count) - count)[stars.row]
+    stride = 1 + (count - 1) // N_JUDGES if objective.tolerance == np.inf else np.ones_like(count)
+    judges = place % np.maximum(stride, 1)[stars.row] == 0
+    of_row, of_star = stars.row[judges], stars.p[judges]
     least = np.where(legal[:, None, None], np.zeros((n, size, size)), np.inf)
     middle = np.zeros((n, size, size), dtype=np.int8)
     for length in range(2, size):
@@ -55,8 +60,8 @@ def _best_parts(stars, legal, tin, points, objective):
                 tried = (summands < least[:, i, k]) & is_wide(
                     tin.x[a], tin.y[a], tin.x[b], tin.y[b], tin.x[c], tin.y[c]
                 )
-                mine = np.flatnonzero(tried[stars.row])
-                row, p = stars.row[mine], stars.p[mine]
+                mine = np.flatnonzero(tried[of_row])
+                row, p = of_row[mine], of_star[mine]
                 within = _least_weight(a[row], b[row], c[row], p, tin, points) >= WITHIN
                 row, p = row[within], p[within]
                 squared, squared_z = _squared_errors(a[row], b[row], c[row], p, tin, points)

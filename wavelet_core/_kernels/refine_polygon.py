@@ -27,6 +27,9 @@ from .refine_tin import hand_over, is_wide
 #: Vertices with more neighbours than this are left to the collapses. On corners of five DEMs 8
 #: leaves 0.4 % more vertices.
 MAX_POLYGON = 10
+#: Where no point has a tolerance to keep, the best triangles are those for every second, third ...
+#: point of a star, so many at most; what they cost is the sum over all.
+N_JUDGES = 128
 #: Barycentric weights down to this are those of a point within a triangle: rounding may leave none
 #: at all for one on an edge otherwise.
 WITHIN = -1e-9
@@ -67,6 +70,7 @@ def propose_polygons(start, stop, chosen, tin, points, objective, error, capacit
             for place in range(points.first[face], points.first[face] + points.n_points[face]):
                 near[n] = points.pool[place]
                 n += 1
+        stride = 1 + (n - 1) // N_JUDGES if objective.tolerance == np.inf and n > 0 else 1
         # -- parts of the ring, the smaller first
         for i in range(size - 1):
             least[i, i + 1] = 0.0
@@ -82,6 +86,8 @@ def propose_polygons(start, stop, chosen, tin, points, objective, error, capacit
                         continue
                     # most triangles break the tolerance where the one before did: looked at first
                     for turn in range(-1, n):
+                        if turn % stride and turn >= 0:
+                            continue
                         m = worst if turn < 0 else turn
                         p = near[m]
                         weights_at(a, b, c, p, tin, points, at)
@@ -93,6 +99,8 @@ def propose_polygons(start, stop, chosen, tin, points, objective, error, capacit
                             break
                         if turn >= 0:
                             total += squared
+                            if total >= least[i, k]:
+                                break
                     if total < least[i, k]:
                         least[i, k], middle[i, k] = total, j
         if not least[0, size - 1] < np.inf:

@@ -74,16 +74,22 @@ def require_sense(
     rounds: int | None,
     max_error: float | None,
     max_rms: float | None,
+    target_vertices: int | None,
 ) -> None:
-    """Refuse numbers that make no sense, and tolerances with the other norm."""
+    """Refuse numbers that make no sense, and rules that go with the other norm or do not agree."""
     n_rounds = 0 if rounds is None else as_whole(rounds)
     if n_rounds is None or n_rounds < 0:
         raise OptionError(
             "{0} is {given}; give a whole number of 0 or more.", "rounds", given=rounds
         )
-    for name, value, due in (("max_error", max_error, "max"), ("max_rms", max_rms, "rms")):
-        if value is None:
-            continue
+    rules = {"max_error": max_error, "max_rms": max_rms, "target_vertices": target_vertices}
+    given = {name: value for name, value in rules.items() if value is not None}
+    if len(given) > 1:
+        raise OptionError("{0} and {1} do not go together; give one of them.", *list(given)[:2])
+    for name, value in given.items():
+        due = "max" if name == "max_error" else "rms"
+        if name == "target_vertices" and as_whole(value) is None:
+            raise OptionError("{0} is {given}; give a whole number.", name, given=value)
         if not value >= 0:
             raise OptionError("{0} is {given}; give 0 or more.", name, given=value)
         if norm != due:

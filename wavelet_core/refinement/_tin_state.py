@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +41,7 @@ from .._validate import FloatArray, IntArray
 from ..mesh.half_edges import half_edges_of
 from ..partition._level_state import scattered
 from ._known import FaceErrors, Known
+from ._proposals import Insertions, Polygons, Removals
 
 #: Vertices with more neighbours than this are not taken out: they claim too much of the TIN. On
 #: three DEMs 10 leaves up to 0.3 % more vertices within a tolerance, 25 as many.
@@ -51,26 +51,6 @@ MAX_REMOVED_RING = 15
 ROOM = 3
 
 IndexArray = NDArray[np.int32]
-
-
-class _Removals(NamedTuple):
-    """Vertices that may go, onto which place of their ring, at what cost; most points of a star."""
-
-    vertex: IndexArray
-    target: IndexArray
-    cost: FloatArray
-    needs: IndexArray
-    capacity: int
-
-
-class _Insertions(NamedTuple):
-    """Points that may come, in which face or on which of its half-edges, how high, at what gain."""
-
-    face: IndexArray
-    point: IndexArray
-    on_edge: IndexArray
-    height: FloatArray
-    gain: FloatArray
 
 
 class TinState:
@@ -195,7 +175,7 @@ class TinState:
     def relocate(self) -> int:
         """Move each vertex to the best place near it, and its height; return how many moved."""
         mesh = self.tin.mesh
-        alive = np.flatnonzero((mesh.outgoing >= 0) & ~self.tin.is_locked).astype(np.int32)
+        alive = self._free_vertices()
         colour = np.full(len(mesh.outgoing), -1, dtype=np.int8)
         colour_vertices(alive[np.argsort(self._key[alive], kind="stable")], mesh, colour)
         return sum(
@@ -312,7 +292,7 @@ class TinState:
         outs, ins = outs[:n], ins[:n]
         vertex = spare.vertex[outs]
         freed = self._remove(vertex, spare.target[outs], spare.capacity)
-        self._insert(_Insertions._make(array[ins] for array in wanted), vertex, freed)
+        self._insert(Insertions._make(array[ins] for array in wanted), vertex, freed)
         self._change_around(np.vstack([spare.needs[outs], corners[came][:n]]))
         return n
 
@@ -338,29 +318,74 @@ class TinState:
 
         The cheapest first; an outline vertex only where the outline runs straight through it.
         """
-        tin = self.tin
-        vertex = np.flatnonzero((tin.mesh.outgoing >= 0) & ~tin.is_locked).astype(np.int32)
-        counts = self._star_points(vertex)
-        capacity = int(counts.max(initial=0))
+        found = self._polygons(self._free_vertices())
+        return self._lay(found.rows(self._cheapest_apart(found.cost, found.needs)))
+
+    def shrink_to(self, n_vertices: int) -> int:
+        """Take out vertices until so many are left, the cheapest first; return how many went.
+
+        The best triangulation takes the place of each star. What a vertex costs whose neighbour has
+        gone is worked out anew once it would be among the next to go.
+        """
+        n_slots, n_before = len(self._lives), self.n_vertices
+        cost = np.full(n_slots, np.inf)
+        corners = np.empty((n_slots, MAX_POLYGON - 2, 3), dtype=np.int8)
+        has_new_star = np.zeros(n_slots, dtype=bool)
+
+        def judge(vertex: IndexArray) -> None:
+            found = self._polygons(vertex)
+            cost[vertex], has_new_star[vertex] = np.inf, False
+            cost[found.vertex], corners[found.vertex] = found.cost, found.corners
+
+        judge(self._free_vertices())
+        while (due := self.n_vertices - n_vertices) > 0:
+            next_ones = np.argsort(cost, kind="stable")[: 2 * due].astype(np.int32)
+            judge(np.sort(next_ones[has_new_star[next_ones]]))
+            chosen = next_ones[np.argsort(cost[next_ones], kind="stable")][:due]
+            chosen = chosen[cost[chosen] < np.inf]
+            if len(chosen) == 0:
+                left = np.flatnonzero(has_new_star & self._lives).astype(np.int32)
+                if len(left) == 0:
+                    break
+                judge(left)
+                continue
+            cheapest = self._as_polygons(chosen, corners[chosen], cost[chosen])
+            gone = cheapest.rows(self._cheapest_apart(cheapest.cost, cheapest.needs))
+            self._lay(gone)
+            cost[gone.vertex] = np.inf
+            has_new_star[gone.needs[gone.needs >= 0]] = True
+        return n_before - self.n_vertices
+
+    def _polygons(self, vertex: IndexArray) -> Polygons:
+        """Return those of the vertices that may go, and what takes the place of their stars."""
+        capacity = int(self._star_points(vertex).max(initial=0))
         corners = np.empty((len(vertex), MAX_POLYGON - 2, 3), dtype=np.int8)
         cost = np.empty(len(vertex))
         run_in_ranges(
-            propose_polygons, len(vertex), vertex, tin, self.points, self.objective,
+            propose_polygons, len(vertex), vertex, self.tin, self.points, self.objective,
             self.face_errors().error, capacity, corners, cost,
         )  # fmt: skip
         found = np.flatnonzero(cost < np.inf)
-        needs = np.empty((len(found), MAX_POLYGON + 1), dtype=np.int32)
-        run_in_ranges(list_stars, len(found), vertex[found], tin.mesh, needs)
-        apart = self._cheapest_apart(cost[found], needs)
-        chosen = found[apart]
-        base = self._room_for(counts[chosen])
+        return self._as_polygons(vertex[found], corners[found], cost[found])
+
+    def _as_polygons(
+        self, vertex: IndexArray, corners: NDArray[np.int8], cost: FloatArray
+    ) -> Polygons:
+        needs = np.empty((len(vertex), MAX_POLYGON + 1), dtype=np.int32)
+        run_in_ranges(list_stars, len(vertex), vertex, self.tin.mesh, needs)
+        return Polygons(vertex, corners, cost, needs)
+
+    def _lay(self, polygons: Polygons) -> int:
+        """Lay polygons that have no vertex in common; return how many."""
+        counts = self._star_points(polygons.vertex)
+        base = self._room_for(counts)
         run_in_ranges(
-            lay_polygons, len(chosen), vertex[chosen], corners[chosen], base, tin, self.points,
-            capacity,
+            lay_polygons, len(counts), polygons.vertex, polygons.corners, base, self.tin,
+            self.points, int(counts.max(initial=0)),
         )  # fmt: skip
-        self._change_around(needs[apart])
-        self._lives[vertex[chosen]] = False
-        return len(chosen)
+        self._change_around(polygons.needs)
+        self._lives[polygons.vertex] = False
+        return len(counts)
 
     def merge(self) -> int:
         """Put a point in place of both ends of an edge, within the tolerance; return how many.
@@ -406,9 +431,13 @@ class TinState:
         order = np.argsort(cost, kind="stable")
         return np.flatnonzero(self._first(order, needs))
 
-    def _removals(self, bound: float, *, with_outline: bool) -> _Removals:
+    def _free_vertices(self) -> IndexArray:
+        free = (self.tin.mesh.outgoing >= 0) & ~self.tin.is_locked
+        return np.flatnonzero(free).astype(np.int32)
+
+    def _removals(self, bound: float, *, with_outline: bool) -> Removals:
         tin = self.tin
-        vertex = np.flatnonzero((tin.mesh.outgoing >= 0) & ~tin.is_locked).astype(np.int32)
+        vertex = self._free_vertices()
         counts = self._star_points(vertex)
         capacity = int(counts.max(initial=0))
         target, cost = np.empty(len(vertex), dtype=np.int32), np.empty(len(vertex))
@@ -421,9 +450,9 @@ class TinState:
         run_in_ranges(list_stars, len(found), vertex[found], tin.mesh, needs)
         fits = needs[:, -1] < 0
         found, needs = found[fits], needs[fits]
-        return _Removals(vertex[found], target[found], cost[found], needs, capacity)
+        return Removals(vertex[found], target[found], cost[found], needs, capacity)
 
-    def _insertions(self) -> _Insertions:
+    def _insertions(self) -> Insertions:
         n = len(self.points.first)
         face = np.arange(n, dtype=np.int32)
         point, on_edge = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
@@ -433,7 +462,7 @@ class TinState:
             height, gain,
         )  # fmt: skip
         found = np.flatnonzero(point >= 0)
-        return _Insertions._make(array[found] for array in (face, point, on_edge, height, gain))
+        return Insertions._make(array[found] for array in (face, point, on_edge, height, gain))
 
     def _remove(self, vertex: IndexArray, target: IndexArray, capacity: int) -> IndexArray:
         """Collapse vertices onto places of their rings; return the two faces that each frees."""
@@ -445,7 +474,7 @@ class TinState:
         )  # fmt: skip
         return freed
 
-    def _insert(self, new: _Insertions, vertex: IndexArray, free: IndexArray) -> None:
+    def _insert(self, new: Insertions, vertex: IndexArray, free: IndexArray) -> None:
         counts = self.points.n_points[new.face]
         split = new.on_edge >= 0
         counts[split] += self.points.n_points[self.tin.mesh.twin[new.on_edge[split]] // 3]

@@ -35,6 +35,8 @@ REPLACED_RATIO = 8.0
 #: Passes of flips before and after the vertices move. On three DEMs 1, 2 and 8 change the RMSE at
 #: 2 %, and the vertices within a tolerance, by less than 1 %, either way.
 FLIP_PASSES = 4
+#: Steps in which a TIN goes down to a number of vertices, with moves and flips before and between.
+SHRINKS = 3
 #: Passes that thin the TIN in one round. 2 leave 0.1 to 0.5 % more vertices, 12 as many.
 THIN_PASSES = 6
 
@@ -109,6 +111,7 @@ def refine(
     keep_points: bool = False,
     max_error: ArrayLike | None = None,
     max_rms: float | None = None,
+    target_vertices: int | None = None,
     attribute_weights: Sequence[float] | None = None,
     locked: ArrayLike | None = None,
     cover: Cover | None = None,
@@ -138,6 +141,10 @@ def refine(
         vertically; one distance for all, or one for each. The mesh has to keep that already.
     max_rms : float, optional
         With ``"rms"``: take out vertices while the root mean square error is at most this.
+    target_vertices : int, optional
+        With ``"rms"``: take out vertices until so many are left, or none can go any more, in two
+        rounds after one of the whole; further rounds follow. A TIN of up to twice as many leads to
+        less error than one of just as many.
     attribute_weights : sequence of float, optional
         As for `wavelet_core.analyse`.
     locked : array_like of bool, shape (n_vertices,), optional
@@ -193,7 +200,8 @@ def refine(
     ids = checked_ids(vertex_ids, mesh, original)
     limits = checked_limits(max_error, original)
     norm = NORMS.find(norm).name
-    require_sense(norm, rounds, None if limits is None else float(limits.min()), max_rms)
+    least = None if limits is None else float(limits.min())
+    require_sense(norm, rounds, least, max_rms, target_vertices)
     if mesh.attribute_names != original.attribute_names:
         raise OptionError(
             "{0} has the attributes {of_mesh}, {1} {of_original}; refine a level of its own "
@@ -211,11 +219,12 @@ def refine(
     cover = cover_of(mesh, original.vertices[:, :2]) if cover is None else cover
     task = _Task(
         mesh, original, ids, fixed, cover, norm == "max", norm == "rms" and not keep_points,
-        limits, max_rms, attribute_weights, float(areas.sum()),
+        limits, max_rms, target_vertices, attribute_weights, float(areas.sum()),
     )  # fmt: skip
     with fitting_engine(original.n_vertices):
         work = _Work(task, progress)
         if limits is None and max_rms is None:
+            work.shrink()
             work.run(rounds)
         else:
             work.thin(rounds)
@@ -234,6 +243,7 @@ class _Task(NamedTuple):
     is_free: bool
     limits: FloatArray | None
     max_rms: float | None
+    target_vertices: int | None
     attribute_weights: Sequence[float] | None
     plan_area: float
 
@@ -260,7 +270,8 @@ class _Work:
         face_of[cover.point] = cover.face
         step = np.sqrt(task.plan_area / self._n_points)
         is_within = task.limits is not None or task.max_rms is not None
-        is_coarse = len(ids) <= COARSE * self._n_points
+        n_left = len(ids) if task.target_vertices is None else task.target_vertices
+        is_coarse = n_left <= COARSE * self._n_points
         self._effort = THOROUGH if is_coarse and not is_within else ORDINARY
         self._state = TinState(
             original.vertices[:, :2] - original.vertices[:, :2].min(axis=0),
@@ -281,6 +292,7 @@ class _Work:
             strictness(task.limits, scale),
         )
         self._error = np.inf
+        self._n_before = 0  # rounds before those of `run`
         self.rounds: list[Round] = []
         self._note()
 
@@ -297,6 +309,20 @@ class _Work:
 
     # -- rounds ----------------------------------------------------------------------------------
 
+    def shrink(self) -> None:
+        """Take out vertices until there are as many as are asked for, with rounds in between."""
+        target, n_vertices = self._task.target_vertices, self._state.n_vertices
+        if target is None or target >= n_vertices:
+            return
+        least, objective = target / n_vertices, self._state.objective
+        self._state.objective = objective._replace(n_trials=ORDINARY.n_trials)
+        for step in range(SHRINKS + 1):
+            left = round(n_vertices * least ** (step / SHRINKS))
+            n_removed = self._state.shrink_to(left)
+            self._improve(step, SHRINKS + self._effort.max_rounds, n_removed=n_removed)
+        self._state.objective = objective
+        self._n_before = SHRINKS + 1
+
     def run(self, n_rounds: int | None) -> None:
         """Lower the error with as many vertices."""
         most = self._effort.max_rounds if n_rounds is None else n_rounds
@@ -304,6 +330,7 @@ class _Work:
         settles = False  # the last round replaces nothing
         share = max(int(self._effort.replaced_share * self._state.n_vertices), 1)
         for number in range(most):
+            here = self._n_before + number
             before, state = self._error, self._state.snapshot()
             is_last = settles or (number > 0 and number == most - 1)
             n_replaced = 0
@@ -312,9 +339,9 @@ class _Work:
                 self._state.objective = self._state.objective._replace(
                     tolerance=float(largest) ** 2
                 )
-            if number > 0 and not is_last:
+            if here > 0 and not is_last:
                 n_replaced = self._state.replace(share, REPLACED_RATIO)
-            self._improve(number, most, n_replaced=n_replaced)
+            self._improve(here, self._n_before + most, n_replaced=n_replaced)
             has_risen = self._error > before
             settles = self._lowered(before) <= least
             if has_risen:

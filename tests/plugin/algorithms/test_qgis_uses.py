@@ -93,6 +93,101 @@ class TestFilter:
         assert list(tmp_path.iterdir()) == []
 
 
+class TestCancelledBetweenOutputs:
+    """What was written before is taken back, whole or not: half of the outputs is no result."""
+
+    def run_until(self, qgis, name, parameters, is_time):
+        from qgis.core import QgsProcessingContext
+
+        log = Log()
+        log.progressChanged.connect(lambda: is_time() and log.cancel())
+        log.isCanceled = lambda: is_time() or Log.isCanceled(log)
+        algorithm = qgis.processingRegistry().algorithmById(f"terrainwavelets:{name}").create()
+        results, _ = algorithm.run(parameters, QgsProcessingContext(), log)
+        return results, log
+
+    def test_the_first_raster_goes_when_the_second_is_cancelled(self, qgis, pyramid, tmp_path):
+        first, second = tmp_path / "aspect.tif", tmp_path / "slope.tif"
+        there = tmp_path / "there.tif"
+        there.write_bytes(b"of another run")
+        parameters = {"INPUT": pyramid, "LEVEL": 2, "SLOPE": str(second), "ASPECT": str(first)}
+        written = [first, second]
+        results, log = self.run_until(
+            qgis, "shapeoflevel", parameters, lambda: any(path.exists() for path in written)
+        )
+        assert results == {}
+        assert log.lines[-1] == "Cancelled; nothing was written."
+        assert sorted(tmp_path.iterdir()) == [there]
+
+    def test_the_layer_of_details_goes_with_what_is_in_it(self, qgis, pyramid, tmp_path):
+        path = tmp_path / "details.gpkg"
+        parameters = {"INPUT": pyramid, "OUTPUT": str(path)}
+        results, _ = self.run_until(qgis, "detaillayers", parameters, path.exists)
+        assert results == {}
+        assert list(tmp_path.iterdir()) == []
+
+    def test_what_was_written_before_a_refusal_goes_too(self, qgis, pyramid, tmp_path, monkeypatch):
+        from qgis.core import QgsProcessingContext
+
+        from wavelet_core.errors import WaveletError
+        from wavelet_gis.workflows.extract import Surface
+
+        def failing(*arguments, **options):
+            raise WaveletError("the outline meets itself.")
+
+        monkeypatch.setattr(Surface, "write", failing)
+        tin, mesh = tmp_path / "tin.gpkg", tmp_path / "mesh.2dm"
+        algorithm = qgis.processingRegistry().algorithmById("terrainwavelets:extractlevel").create()
+        parameters = {"INPUT": pyramid, "LEVEL": 2, "TIN": str(tin), "MESH": str(mesh)}
+        log = Log()
+        _, is_done = algorithm.run(parameters, QgsProcessingContext(), log)
+        assert not is_done
+        assert log.errors == ["The outline meets itself."]
+        assert list(tmp_path.iterdir()) == []
+
+    def test_a_refusal_leaves_nothing_in_memory(self, qgis, pyramid, monkeypatch):
+        import gc
+        import weakref
+
+        from qgis.core import QgsProcessingContext
+
+        from wavelet_core.errors import WaveletError
+        from wavelet_gis.workflows import extract
+
+        held = []
+
+        class Large:
+            pass
+
+        def failing(*arguments, **options):
+            in_the_frame = Large()
+            held.append(weakref.ref(in_the_frame))
+            raise WaveletError("no.")
+
+        monkeypatch.setattr(extract, "extract", failing)
+        algorithm = qgis.processingRegistry().algorithmById("terrainwavelets:extractlevel").create()
+        parameters = {"INPUT": pyramid, "LEVEL": 2, "RASTER": "TEMPORARY_OUTPUT"}
+        _, is_done = algorithm.run(parameters, QgsProcessingContext(), Log())
+        assert not is_done
+        gc.collect()
+        assert len(held) == 1
+        assert held[0]() is None
+
+    def test_a_table_in_a_database_of_the_user_leaves_the_database(self, qgis, pyramid, tmp_path):
+        import sqlite3
+
+        path = tmp_path / "mine.gpkg"
+        with sqlite3.connect(path) as database:
+            database.execute("CREATE TABLE mine (a)")
+        parameters = {"INPUT": pyramid, "OUTPUT": f"ogr:dbname='{path}' table=\"details\" (geom)"}
+        n_seen = []
+        self.run_until(
+            qgis, "detaillayers", parameters, lambda: n_seen.append(1) or len(n_seen) > 20
+        )
+        with sqlite3.connect(path) as database:
+            assert database.execute("SELECT count(*) FROM mine").fetchone() == (0,)
+
+
 def test_energy_maps_where_the_terrain_is_rough(run, pyramid, tmp_path):
     from osgeo import gdal
 
