@@ -8,8 +8,9 @@ its own in which packages that QGIS does not bring are hidden; its input is synt
 1,000 x 1,000 cells, or 500,000 points. Seconds are those of the processor, so that other work on
 the machine does not count. ``bar`` is the longest time in which the progress bar showed nothing
 new, which is a tenth of a percent or another line above it; ``cancel`` the longest without a look
-at the cancel button; both of the processor or by the clock, whichever says less. With ``--cancel`` each case is run again and cancelled where it had looked
-away for longest, and how long it took to end is said.
+at the cancel button; both of the processor or by the clock, whichever says less. With ``--cancel``
+each case is run again and cancelled where it had looked away for longest, and how long it took to
+end is said.
 ``--page docs/howto/qgis.md`` puts the rows into the table there.
 """
 
