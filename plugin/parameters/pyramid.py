@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from ..qgis_io.raster_reader import RasterInput
     from .request import Request
 
+#: Part of the writing that has gone when the file is handed to the disk.
+BEFORE_SYNC = 0.9
+
 
 def save(
     request: Request,
@@ -72,13 +75,16 @@ def _write(work: Work, geo: GeoPyramid, path: str, layers: str) -> None:
     of_pyramid = n_vertices / (n_vertices + n_rows)
     middle, last = SHARE_OF_WRITING * of_pyramid, 1.0 - (1.0 - SHARE_OF_WRITING) * of_pyramid
 
+    def report(fraction: float) -> bool:
+        return work.progress(BEFORE_SYNC * fraction)
+
     def of_pyramid_file(fraction: float) -> bool:
         if fraction <= SHARE_OF_WRITING:
-            return work.progress(middle * fraction / SHARE_OF_WRITING)
-        return work.progress(1.0 - (1.0 - last) * (1.0 - fraction) / (1.0 - SHARE_OF_WRITING))
+            return report(middle * fraction / SHARE_OF_WRITING)
+        return report(1.0 - (1.0 - last) * (1.0 - fraction) / (1.0 - SHARE_OF_WRITING))
 
     def of_layers(fraction: float) -> bool:
-        return work.progress(middle + (last - middle) * fraction)
+        return report(middle + (last - middle) * fraction)
 
     with new_file(path, overwrite=True) as scratch:
         is_alone = layers == "none"
