@@ -314,11 +314,11 @@ class FilterLevels(PyramidAlgorithm):
             )
 
         path = request.output_file("OUTPUT")
-        end = 0.69 if path else 0.84
+        end, told = (0.6, 0.7) if path else (0.72, 0.85)
         filtered = request.computed(compute, 0.05, end)
         for line in filtered.changes:
             request.say(line)
-        request.figures = request.computed(lambda work: _figures(filtered), end, end + 0.01)
+        request.figures = request.computed(lambda work: _figures(filtered), end, told)
         results: Values = {}
         if path:
             request.stage(tr("Measuring the errors of every level"))

@@ -39,6 +39,7 @@ from ..ui.translation import tr
 from ._dem_input import DemInput
 from ._solver_input import (
     add_solver_parameters,
+    before_meshing,
     for_solver,
     solver_packages,
     solver_refusal,
@@ -262,7 +263,8 @@ class SimplifyDem(DemInput):
                 **options,
             )
 
-        simplified = for_solver(request, request.computed(compute, 0.15, 0.65), self.sizes)
+        tin = request.computed(compute, 0.15, before_meshing(request))
+        simplified = for_solver(request, tin, self.sizes)
         figures = {
             **surface_figures(simplified),
             "N_INPUT_VERTICES": terrain.mesh.n_vertices,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from qgis.core import (
@@ -22,8 +23,12 @@ if TYPE_CHECKING:
     from wavelet_gis.model.geo_pyramid import GeoPyramid
 
     from ..base import TerrainWaveletsAlgorithm
+    from ..qgis_io.background import Work
     from ..qgis_io.raster_reader import RasterInput
     from .request import Request
+
+#: Part of the writing that has gone when the file is handed to the disk.
+BEFORE_SYNC = 0.9
 
 
 def save(
@@ -49,40 +54,45 @@ def save(
     layers : {"auto", "all", "coarse", "none"}
         See `wavelet_gis.products.layers.pyramid_layers`.
     """
+    request.stage(tr("Writing the pyramid"))
+    request.computed(partial(_write, geo=geo, path=path, layers=layers), start, stop)
+    remember(path)
+    _add_to_map(request, path)
+
+
+def _write(work: Work, geo: GeoPyramid, path: str, layers: str) -> None:
+    """Write a pyramid and its layers, in the thread of the work."""
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.pyramid.pyramid_file import SHARE_OF_WRITING, write_pyramid
+    from wavelet_gis.io.read_back import read_back
     from wavelet_gis.products.layers import n_features, pyramid_layers
 
+    from ..qgis_io.crs_and_progress import require_running
     from ..qgis_io.geopackage import add_layers
 
-    request.stage(tr("Writing the pyramid"))
     # a vertex of the pyramid and a row of a layer take about as long; it is read back after both
     n_vertices, n_rows = geo.pyramid.n_vertices(geo.pyramid.n_levels), n_features(geo, layers)
-    of_pyramid = (stop - start) * n_vertices / (n_vertices + n_rows)
-    middle = start + SHARE_OF_WRITING * of_pyramid
-    last = stop - (1.0 - SHARE_OF_WRITING) * of_pyramid
-    writes, reads_back = request.progress(start, middle), request.progress(last, stop)
+    of_pyramid = n_vertices / (n_vertices + n_rows)
+    middle, last = SHARE_OF_WRITING * of_pyramid, 1.0 - (1.0 - SHARE_OF_WRITING) * of_pyramid
 
     def report(fraction: float) -> bool:
+        return work.progress(BEFORE_SYNC * fraction)
+
+    def of_pyramid_file(fraction: float) -> bool:
         if fraction <= SHARE_OF_WRITING:
-            return writes(fraction / SHARE_OF_WRITING)
-        return reads_back((fraction - SHARE_OF_WRITING) / (1.0 - SHARE_OF_WRITING))
+            return report(middle * fraction / SHARE_OF_WRITING)
+        return report(1.0 - (1.0 - last) * (1.0 - fraction) / (1.0 - SHARE_OF_WRITING))
+
+    def of_layers(fraction: float) -> bool:
+        return report(middle + (last - middle) * fraction)
 
     with new_file(path, overwrite=True) as scratch:
         is_alone = layers == "none"
-        write_pyramid(scratch, geo, report, is_alone=is_alone)
+        write_pyramid(scratch, geo, of_pyramid_file, is_alone=is_alone)
         if not is_alone:
-            add_layers(
-                scratch,
-                pyramid_layers(geo, layers),
-                layer_wkt(geo),
-                request.feedback,
-                request.progress(middle, last),
-                n_rows,
-            )
-    remember(path)
-    _add_to_map(request, path)
-    reads_back(1.0)
+            rows = pyramid_layers(geo, layers)
+            add_layers(scratch, rows, layer_wkt(geo), work, of_layers, n_rows)
+        read_back(scratch, lambda _: require_running(work))  # the last moment to stop it
 
 
 def add_map_parameter(algorithm: TerrainWaveletsAlgorithm) -> None:

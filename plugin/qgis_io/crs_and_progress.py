@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from wavelet_gis.crs.frame import CoordinateSystem
 
+    from .background import Work
+
 
 def progress(
     feedback: QgsFeedback, start: float = 0.0, stop: float = 1.0
@@ -41,7 +43,7 @@ def progress(
     return report
 
 
-def require_running(feedback: QgsFeedback) -> None:
+def require_running(feedback: QgsFeedback | Work) -> None:
     """Stop here if the user has cancelled.
 
     Raises

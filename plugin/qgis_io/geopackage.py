@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from wavelet_gis.products.layers import Layer
     from wavelet_gis.tiles.index import TileIndex
 
+    from .background import Work
+
 Path = str | os.PathLike[str]
 
 _GEOMETRY_TYPES = {"Point Z": ogr.wkbPoint25D, "Polygon Z": ogr.wkbPolygon25D}
@@ -50,7 +52,7 @@ def add_layers(
     path: Path,
     layers: Iterable[Layer],
     wkt: str | None,
-    feedback: QgsFeedback,
+    feedback: QgsFeedback | Work,
     report: Callable[[float], bool],
     n_rows: int,
 ) -> None:
@@ -62,7 +64,7 @@ def add_layers(
     layers : iterable of wavelet_gis.products.layers.Layer
     wkt : str or None
         CRS of all of them.
-    feedback : QgsFeedback
+    feedback : QgsFeedback or Work
         Holds the cancel button.
     report : callable
         Takes the fraction that is done.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,8 @@ MAX_REMOVED_RING = 15
 ROOM = 3
 
 IndexArray = NDArray[np.int32]
+#: Called with the share of a pass that is done; it may raise, to stop.
+Tell = Callable[[float], None]
 
 
 class TinState:
@@ -172,16 +175,18 @@ class TinState:
 
     # -- places and heights ----------------------------------------------------------------------
 
-    def relocate(self) -> int:
+    def relocate(self, tell: Tell | None = None) -> int:
         """Move each vertex to the best place near it, and its height; return how many moved."""
         mesh = self.tin.mesh
         alive = self._free_vertices()
         colour = np.full(len(mesh.outgoing), -1, dtype=np.int8)
         colour_vertices(alive[np.argsort(self._key[alive], kind="stable")], mesh, colour)
-        return sum(
-            self._relocate(np.flatnonzero(colour == c).astype(np.int32))
-            for c in range(int(colour.max(initial=-1)) + 1)
-        )
+        n_moved, n_colours = 0, int(colour.max(initial=-1)) + 1
+        for c in range(n_colours):
+            n_moved += self._relocate(np.flatnonzero(colour == c).astype(np.int32))
+            if tell is not None:
+                tell((c + 1) / n_colours)
+        return n_moved
 
     def _relocate(self, chosen: IndexArray) -> int:
         n = len(chosen)
@@ -214,11 +219,13 @@ class TinState:
 
     # -- edges -----------------------------------------------------------------------------------
 
-    def flip(self, n_passes: int) -> int:
+    def flip(self, n_passes: int, tell: Tell | None = None) -> int:
         """Turn edges that lie better the other way, the best first; return how many."""
         mesh, gains = self.tin.mesh, self._known.gains
         n_flipped = 0
-        for _ in range(n_passes):
+        for number in range(n_passes):
+            if tell is not None:
+                tell(number / n_passes)
             self._judge_edges()
             chosen = self._apart(np.flatnonzero(gains > 0.0).astype(np.int32), gains)
             if len(chosen) == 0:

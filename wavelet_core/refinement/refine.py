@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -369,18 +369,18 @@ class _Work:
 
     def _thin(self, number: int, most: int) -> int:
         """Take out what the tolerance allows; return how many vertices that were."""
-        n_removed = self._collapse()
+        n_removed = self._collapse(self._part(number, 0.1, most))
         if self._task.limits is not None:
-            self._report((number + 0.1) / (most + 1))
             n_removed += self._state.thin_by_polygons()
             self._report((number + 0.15) / (most + 1))
             n_removed += self._state.merge()
         return n_removed
 
-    def _collapse(self) -> int:
+    def _collapse(self, tell: Callable[[float], None]) -> int:
         """Take out what collapses onto a neighbour; return how many vertices that were."""
         n_removed = 0
-        for _ in range(THIN_PASSES):
+        for number in range(THIN_PASSES):
+            tell(number / THIN_PASSES)
             budget, state = self._budget(), self._state.snapshot()
             n_here = self._state.thin(budget) if budget > 0 else 0
             if self._budget() < 0:  # where other channels gained what z lost
@@ -403,10 +403,9 @@ class _Work:
         """Turn edges, move vertices, turn edges; note what the TIN is like."""
         if self._task.limits is not None:  # each kind of errors lets go what the other one held
             self._judge_by_powers(number % 2 == 1)
-        n_flipped = self._state.flip(FLIP_PASSES)
-        self._report((number + 0.3) / (most + 1))
-        n_moved = self._state.relocate()
-        n_flipped += self._state.flip(FLIP_PASSES)
+        n_flipped = self._state.flip(FLIP_PASSES, self._part(number + 0.2, 0.15, most))
+        n_moved = self._state.relocate(self._part(number + 0.35, 0.5, most))
+        n_flipped += self._state.flip(FLIP_PASSES, self._part(number + 0.85, 0.15, most))
         if self._task.limits is not None:
             self._judge_by_powers(False)
         self._note(n_moved, n_flipped, n_replaced, n_removed)
@@ -433,6 +432,10 @@ class _Work:
         if before == 0.0:
             return 0.0
         return float(1.0 - (self._error / before) ** (1.0 / (8 if self._task.is_largest else 2)))
+
+    def _part(self, start: float, length: float, most: int) -> Callable[[float], None]:
+        """Return what reports a part of a round, in rounds."""
+        return lambda share: self._report((start + length * share) / (most + 1))
 
     def _report(self, fraction: float) -> None:
         report(self._progress, fraction, "the refinement was cancelled; nothing was kept.")

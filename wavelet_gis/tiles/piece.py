@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from wavelet_core import Cancelled, Progress, PyramidError, TriangleMesh, WaveletError
 from wavelet_core import analyse as core_analyse
+from wavelet_core.progress import part_of
 from wavelet_gis._fields import holds_fields
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.io.atomic import new_file
@@ -72,6 +73,10 @@ POINTS_MEASURED = 200_000
 #: Points of the input, in those of a tile, that a group knows besides its vertices. All that four
 #: tiles have take 150 bytes for each vertex that a group begins with, whose analysis takes 400.
 POINTS_OF_GROUP = 4.0
+
+#: Parts of the time of a piece that have gone when it is written, and of the time of making a
+#: group's pyramid when its errors are measured.
+BEFORE_WRITING, BEFORE_ERRORS = 0.75, 0.85
 
 #: What a record has, by its status; one that lacks it is damaged, and counts as none.
 _FIELDS: dict[str, dict[str, type]] = {
@@ -152,7 +157,7 @@ def make_piece(
     place.parent.mkdir(parents=True, exist_ok=True)
     try:
         with collected(), _dated(plan):
-            made = _made(folder, plan, piece, inputs, read, progress)
+            made = _made(folder, plan, piece, inputs, read, part_of(progress, 0.0, BEFORE_WRITING))
             geo = made.geo
             if geo is None and made.points is not None:
                 rest = place.with_suffix(LOOSE)
@@ -164,7 +169,7 @@ def make_piece(
                 record |= {"status": "empty"}
             else:
                 with new_file(place, overwrite=True) as scratch:
-                    write_pyramid_file(scratch, geo, "none")
+                    write_pyramid_file(scratch, geo, "none", part_of(progress, BEFORE_WRITING, 1.0))
                 record |= {"status": "whole", **_figures(geo), "sha256": sha256_of(place)}
                 record["n_bytes"] = place.stat().st_size
                 if piece.stage + 1 < plan.n_stages:
@@ -376,7 +381,7 @@ def _group(
         locked=locked,
         integrals=whole.integrals,
         points=points if plan.is_error_guided else None,
-        progress=progress,
+        progress=part_of(progress, 0.0, BEFORE_ERRORS),
         **plan.options_of(piece, len(whole.cells)),
     )
     geo = GeoPyramid(
@@ -390,7 +395,8 @@ def _group(
     # The analysis of a group of four tiles has measured its levels at all points of the input; that
     # of a larger one knows part of them, and all that are its vertices, which would count too much.
     is_all = plan.is_error_guided and piece.stage == 1
-    return geo.with_errors(points=None if is_all else sample)
+    measuring = part_of(progress, BEFORE_ERRORS, 1.0)
+    return geo.with_errors(measuring, points=None if is_all else sample)
 
 
 def _points_of(

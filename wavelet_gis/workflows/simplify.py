@@ -113,9 +113,10 @@ def simplify(
     clock = Clock(on_stage)
     clock.stage("simplify")
     with collected() as notes:
-        pyramid = _analysed(terrain, asked, part_of(progress, 0.0, 0.6))
+        share = _share_of_analysis(asked)
+        pyramid = _analysed(terrain, asked, part_of(progress, 0.0, share))
     clock.stage("fit")
-    tin = _finished(pyramid, terrain, asked, asked.rounds, part_of(progress, 0.6, 0.95))
+    tin = _finished(pyramid, terrain, asked, asked.rounds, part_of(progress, share, 0.95))
     clock.stage("errors")
     tin, errors = _within_tolerance(tin, pyramid, terrain, asked)
     warn_of_error_above(
@@ -140,6 +141,13 @@ def simplify(
         along_lines=measured_along_lines(terrain, tin.mesh),
         limits=asked.limits_of(terrain.mesh.n_vertices),
     )
+
+
+def _share_of_analysis(asked: Request) -> float:
+    """Return the part of the time that the analysis takes, for the progress."""
+    if asked.rounds == 0:
+        return 0.85
+    return 0.6 if asked.vertices is None else 0.4
 
 
 def _analysed(terrain: Terrain, asked: Request, progress: Progress | None) -> Pyramid:

@@ -5,6 +5,8 @@ import itertools
 import numpy as np
 import pytest
 from helpers_meshes import assert_refined, grid_with_holes, random_delaunay
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from wavelet_core import OptionError, TriangleMesh, analyse, finished, refine, synthetic
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
@@ -146,6 +148,25 @@ def test_a_coarse_tin_starts_from_a_finer_level_and_errs_less(n_columns, monkeyp
     assert shrunk.mesh.n_vertices == straight.mesh.n_vertices == mesh.n_vertices // 40
     assert shrunk.rounds[0].n_vertices >= 2 * straight.rounds[0].n_vertices
     assert rmse(shrunk.mesh, mesh) < rmse(straight.mesh, mesh)
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    seed=st.integers(0, 10_000),
+    n=st.integers(300, 900),
+    n_attributes=st.integers(0, 1),
+    share=st.sampled_from([20, 40, 80]),
+    locks=st.booleans(),
+)
+def test_any_cloud_goes_down_to_a_valid_tin(seed, n, n_attributes, share, locks):
+    mesh = random_delaunay(n, n_attributes, seed=seed, scale=50.0)
+    locked = np.random.default_rng(seed).random(n) < (0.01 if locks else 0.0)
+    pyramid = analyse(mesh, target_vertices=max(n // share, 6), locked=locked)
+    coarse, ids = pyramid.mesh(0), pyramid.vertex_ids(0)
+    tin = finished(pyramid, mesh)
+    assert tin.mesh.n_vertices == coarse.n_vertices
+    assert_refined(tin, ids, coarse, mesh)
+    assert np.isin(ids[locked[ids]], tin.vertex_ids).all()
 
 
 @pytest.mark.parametrize(

@@ -38,8 +38,8 @@ class Simplified(Surface):
         Whether the heights are fitted to all input vertices by least squares; otherwise they are
         those of the pyramid's coarsest level or, after a refinement, of the input.
     rounds : tuple of Round
-        What each round of the refinement led to, in the input's unit of z; the pyramid's coarsest
-        level first, empty where nothing was refined.
+        What each round of the refinement led to, in the input's unit of z; the level of the pyramid
+        that it began with first, empty where nothing was refined.
     seconds : dict of str to float
         What the parts of the work took.
     along_lines : SurfaceErrors or None
