@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from wavelet_gis.crs.frame import CoordinateSystem
     from wavelet_gis.model.geo_pyramid import GeoPyramid
     from wavelet_gis.model.terrain import Terrain
-    from wavelet_gis.model.tin import ConstrainedTin
     from wavelet_gis.workflows.options import WaveletOptions
 
     from ..qgis_io.background import Work
@@ -310,8 +309,10 @@ class AnalyseTin(AnalysisAlgorithm):
             )
         request.stage(tr("Triangulating {} points").format(int(inside.sum())))
 
-        def triangulate(work: Work) -> ConstrainedTin:
-            return tin_with_lines(
+        locks_lines, profile = request.flag("LOCK_BREAKLINES"), self.profile
+
+        def triangulate(work: Work) -> Terrain:
+            tin = tin_with_lines(
                 local[inside],
                 points.attributes[inside],
                 attribute_names,
@@ -320,15 +321,15 @@ class AnalyseTin(AnalysisAlgorithm):
                 contains=contains,
                 is_marked=points.is_marked[inside],
             )
+            merged = points_merged(name, points.xyz[inside], local[inside])
+            return replace(
+                terrain_of_mesh(name, tin.mesh, system, frame, unit),
+                merged=np.concatenate([merged, tin.replaced]),
+                locked=locked_vertices(tin, lines=locks_lines),
+                profile=profile,
+            )
 
-        tin = request.computed(triangulate, 0.1, 0.25)
-        merged = points_merged(name, points.xyz[inside], local[inside])
-        return replace(
-            terrain_of_mesh(name, tin.mesh, system, frame, unit),
-            merged=np.concatenate([merged, tin.replaced]),
-            locked=locked_vertices(tin, lines=request.flag("LOCK_BREAKLINES")),
-            profile=self.profile,
-        )
+        return request.computed(triangulate, 0.1, 0.25)
 
 
 def _first_of(request: Request, *names: str) -> float | None:

@@ -35,6 +35,26 @@ def run_python(code, folder, **environment):
 
 
 @pytest.mark.skipif(not _jit.HAS_NUMBA, reason="compiles kernels, and numba is off")
+def test_compiled_code_lies_where_no_other_version_of_numba_looks(tmp_path):
+    """QGIS brings its own numba: it read code of another one, between its index and its code."""
+    package = tmp_path / "wavelet_core"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    code = (
+        "import numba, numpy as np\n"
+        "from wavelet_core._kernels import _jit\n"
+        "from wavelet_core.metrics import surface_errors\n"
+        "from wavelet_core import synthetic\n"
+        "with _jit.engine('compiled'):\n"
+        "    surface_errors(synthetic.hills(9, 9), np.zeros((3, 3)))\n"
+        "print(numba.__version__)"
+    )
+    version = run_python(code, tmp_path)
+    made = [path.name for path in package.rglob("*.nb[ic]")]
+    assert len(made) > 1
+    assert all(f"-numba{version}." in name for name in made), made
+
+
+@pytest.mark.skipif(not _jit.HAS_NUMBA, reason="compiles kernels, and numba is off")
 def test_a_change_in_one_kernel_file_voids_the_compiled_code_of_the_others(tmp_path):
     """Numba looks at the caller's file alone; a stale callee would go on working, wrongly."""
     package = tmp_path / "wavelet_core"

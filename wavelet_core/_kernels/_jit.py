@@ -182,7 +182,20 @@ def njit(function: Callable[..., Any]) -> Any:
     with contextlib.suppress(AttributeError):
         index = compiled._cache._cache_file
         index._version = (index._version, _stamp_of_all_kernels())
+        _name_after_numba(index)
     return compiled
+
+
+def _name_after_numba(index: Any) -> None:
+    """Give each version of numba files of its own: those of QGIS and of pip may share the package.
+
+    An index is written before the code that it names. In between another process finds what the
+    other version has left there, and cannot read it.
+    """
+    version = f"-numba{_numba.__version__}"
+    index._index_name = index._index_name.replace(".nbi", f"{version}.nbi")
+    index._index_path = os.path.join(index._cache_path, index._index_name)
+    index._data_name_pattern = index._data_name_pattern.replace(".{", f"{version}.{{")
 
 
 def inlined(function: Callable[..., Any]) -> Any:

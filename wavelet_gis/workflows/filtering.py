@@ -211,7 +211,9 @@ def filter_pyramid(
     wanted = chosen_gains(geo, single, levels=levels, metres=None if builds_levels else metres)
     changed, sigmas = geo, dict[str, float]()
     finest_before = geo.pyramid.synthesise()
-    middle = (0.7 if builds_levels else 1.0) if asks_denoising else 0.0
+    # the surface is worked out anew at the end: quickly beside the noise, slowly beside sizes
+    middle = (0.7 if builds_levels else 0.95) if asks_denoising else 0.0
+    last = 0.95 if asks_denoising else 0.75
     if asks_denoising:
         changed, sigmas = denoised(
             changed,
@@ -228,7 +230,7 @@ def filter_pyramid(
     if builds_levels:
         assert metres is not None
         changed = with_sizes(
-            changed, metres, drop_coarse=drop_coarse, progress=part_of(progress, middle, 1.0)
+            changed, metres, drop_coarse=drop_coarse, progress=part_of(progress, middle, last)
         )
     if wanted or (asks_scales and not builds_levels):
         changed = with_level_gains(changed, wanted, drop_coarse=drop_coarse and not builds_levels)
