@@ -54,8 +54,10 @@ class ChosenFiles:
     def __init__(self, algorithm: QgsProcessingAlgorithm, parameters: dict[str, Any]) -> None:
         self._before: dict[str, tuple[int, int] | None] = {}
         for definition in algorithm.destinationParameterDefinitions():
-            path = _chosen_file(definition, parameters.get(definition.name()))
-            if path is not None and definition.type() != "folderDestination":
+            value = parameters.get(definition.name())
+            path = _chosen_file(definition, value)
+            is_folder = definition.type() == "folderDestination"
+            if path is not None and not is_folder and not _appends(value):
                 self._before[path] = _state_of(path)
 
     def take_back(self) -> None:
@@ -65,6 +67,11 @@ class ChosenFiles:
                 for name in (path, f"{path}.aux.xml"):
                     with contextlib.suppress(OSError):
                         os.unlink(name)
+
+
+def _appends(value: Any) -> bool:
+    """Return whether features are added to a layer of the user's, which holds others already."""
+    return isinstance(value, QgsProcessingOutputLayerDefinition) and value.useRemapping()
 
 
 def _state_of(path: str) -> tuple[int, int] | None:

@@ -99,7 +99,7 @@ class TestCancelledBetweenOutputs:
     def run_until(self, qgis, name, parameters, is_time):
         from qgis.core import QgsProcessingContext
 
-        log = Log()
+        self.log = log = Log()
         log.progressChanged.connect(lambda: is_time() and log.cancel())
         log.isCanceled = lambda: is_time() or Log.isCanceled(log)
         algorithm = qgis.processingRegistry().algorithmById(f"terrainwavelets:{name}").create()
@@ -172,6 +172,32 @@ class TestCancelledBetweenOutputs:
         gc.collect()
         assert len(held) == 1
         assert held[0]() is None
+
+    def test_a_layer_that_features_are_added_to_stays(self, qgis, pyramid, tmp_path):
+        """It holds what the user had in it before."""
+        import processing
+        from qgis.core import (
+            QgsProcessingOutputLayerDefinition,
+            QgsRemappingSinkDefinition,
+            QgsVectorLayer,
+        )
+
+        path = tmp_path / "mine.gpkg"
+        processing.run("terrainwavelets:detaillayers", {"INPUT": pyramid, "OUTPUT": str(path)})
+        layer = QgsVectorLayer(str(path), "mine", "ogr")
+        mapping = QgsRemappingSinkDefinition()
+        mapping.setDestinationFields(layer.fields())
+        mapping.setDestinationWkbType(layer.wkbType())
+        mapping.setDestinationCrs(layer.crs())
+        n_before = layer.featureCount()
+        output = QgsProcessingOutputLayerDefinition(str(path))
+        output.setRemappingDefinition(mapping)
+        parameters = {"INPUT": pyramid, "OUTPUT": output}
+        results, _ = self.run_until(
+            qgis, "detaillayers", parameters, lambda: max(self.log.fractions, default=0) > 40
+        )
+        assert results == {}
+        assert QgsVectorLayer(str(path), "mine", "ogr").featureCount() >= n_before
 
     def test_a_table_in_a_database_of_the_user_leaves_the_database(self, qgis, pyramid, tmp_path):
         import sqlite3
