@@ -224,7 +224,7 @@ def refine(
     with fitting_engine(original.n_vertices):
         work = _Work(task, progress)
         if limits is None and max_rms is None:
-            work.shrink()
+            work.shrink(rounds)
             work.run(rounds)
         else:
             work.thin(rounds)
@@ -309,17 +309,18 @@ class _Work:
 
     # -- rounds ----------------------------------------------------------------------------------
 
-    def shrink(self) -> None:
+    def shrink(self, n_rounds: int | None) -> None:
         """Take out vertices until there are as many as are asked for, with rounds in between."""
         target, n_vertices = self._task.target_vertices, self._state.n_vertices
         if target is None or target >= n_vertices:
             return
+        n_after = self._effort.max_rounds if n_rounds is None else n_rounds
         least, objective = target / n_vertices, self._state.objective
         self._state.objective = objective._replace(n_trials=ORDINARY.n_trials)
         for step in range(SHRINKS + 1):
             left = round(n_vertices * least ** (step / SHRINKS))
             n_removed = self._state.shrink_to(left)
-            self._improve(step, SHRINKS + self._effort.max_rounds, n_removed=n_removed)
+            self._improve(step, SHRINKS + 1 + n_after, n_removed=n_removed)
         self._state.objective = objective
         self._n_before = SHRINKS + 1
 

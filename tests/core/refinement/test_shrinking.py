@@ -187,6 +187,20 @@ def test_rounds_that_are_asked_for_start_from_the_coarsest_level():
     assert [here.n_vertices for here in rounds] == [50] * 5
 
 
+@pytest.mark.parametrize("rounds", [None, 0, 2, 30])
+def test_its_progress_never_goes_back(rounds):
+    mesh = synthetic.hills(24, 27)
+    pyramid = analyse(mesh, target_vertices=200)
+    seen = []
+    refine(
+        pyramid.mesh(0), mesh, pyramid.vertex_ids(0), target_vertices=90, rounds=rounds,
+        progress=lambda fraction: seen.append(fraction) or True,
+    )  # fmt: skip
+    assert seen == sorted(seen)
+    assert len(seen) > 10
+    assert seen[-1] <= 1.0
+
+
 def test_where_locked_vertices_leave_more_it_says_how_many():
     mesh = synthetic.hills(14, 15)
     pyramid = analyse(mesh, target_vertices=90)
