@@ -77,7 +77,7 @@ def write_raster(request: Request, name: str, surface: Surface) -> str:
     dem = request.computed(
         lambda work: surface_dem(surface.geo, surface.mesh, cell_size=cell_size), 0.8, 0.85
     )
-    write_dem(path, dem, crs_of(surface.geo), request.feedback)
+    write_dem(path, dem, crs_of(surface.geo), request.feedback, request.progress(0.85, 0.9))
     request.finish(name, path, styles.style_hillshade)
     return path
 

@@ -22,8 +22,8 @@ def write_level(request: Request, name: str, geo: GeoPyramid, level: int) -> str
     """Write the triangles of a level to the sink ``name`` and return where they are."""
     from wavelet_gis.products.layers import coarse_layers
 
-    tin, _ = coarse_layers(geo, level)
-    return write_layer(request, name, geo, tin)
+    layer = request.computed(lambda work: next(coarse_layers(geo, level)), 0.8, 0.85)
+    return write_layer(request, name, geo, layer)
 
 
 def write_surface(
@@ -42,11 +42,13 @@ def write_surface(
     """
     from wavelet_gis.products.layers import tin_layers
 
-    results = {}
+    results: dict[str, str] = {}
     layers = tin_layers(surface.geo, surface.mesh, surface.vertex_ids)
-    for name, layer in zip((tin, vertices), layers, strict=True):
-        if request.wants(name):
-            results[name] = write_layer(request, name, surface.geo, layer)
+    for name in (tin, vertices):
+        if request.wants(name) or request.wants(vertices):  # which are the second layer
+            layer = request.computed(lambda work: next(layers), 0.8, 0.85)
+            if request.wants(name):
+                results[name] = write_layer(request, name, surface.geo, layer)
     return results
 
 
