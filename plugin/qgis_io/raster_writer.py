@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 #: Of the time in which a raster is written: all but its reading back.
 _SHARE_OF_WRITING = 0.7
+#: Cells that are written between two looks at the cancel button: GDAL compresses them meanwhile.
+_CELLS_AT_ONCE = 1 << 18
 
 
 def write_dem(
@@ -207,7 +209,8 @@ def _write_strips(
     band: Any, values: NDArray[Any], feedback: QgsFeedback, report: Callable[[float], bool]
 ) -> bool:
     n_rows, n_columns = values.shape
-    for start, stop in strips(n_rows, n_columns, feedback):
+    block_rows = band.GetBlockSize()[1]
+    for start, stop in strips(n_rows, n_columns, feedback, _CELLS_AT_ONCE, block_rows):
         strip = np.ascontiguousarray(values[start:stop])
         if band.WriteRaster(0, start, n_columns, stop - start, strip.tobytes()) != 0:
             return False
