@@ -269,7 +269,7 @@ class ClusterDetails(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        return request.computed(compute, 0.05, 0.55)
+        return request.computed(compute, 0.12, 0.55)
 
     def _given(self, request: Request, geo: GeoPyramid) -> NDArray[np.int64]:
         """Return the classes that are known, below 0 where they are not."""
@@ -284,7 +284,7 @@ class ClusterDetails(PyramidAlgorithm):
             self.training,
             request.text("CLASS_FIELD"),
             request.computed(
-                lambda work: geo.frame.to_file(geo.pyramid.synthesise().vertices), 0.05, 0.05
+                lambda work: geo.frame.to_file(geo.pyramid.synthesise().vertices), 0.05, 0.12
             ),
             crs_of(geo),
             request.transforms,

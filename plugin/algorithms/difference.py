@@ -138,6 +138,6 @@ class Difference(PyramidAlgorithm):
             name.upper(): figures[name] for name in ("mean", "rms", "lowest", "highest")
         }
         path = request.output_layer("OUTPUT")
-        write_dem(path, found.dem, crs_of(geo), request.feedback)
+        write_dem(path, found.dem, crs_of(geo), request.feedback, request.progress(0.8))
         request.finish("OUTPUT", path, styles.style_difference)
         return {**request.figures, "OUTPUT": path}

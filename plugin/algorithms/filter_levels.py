@@ -346,7 +346,8 @@ class FilterLevels(PyramidAlgorithm):
                 tr("A difference of DEMs needs a pyramid that was made from a DEM.")
             )
         difference = request.computed(lambda work: filtered.difference(), 0.9, 0.95)
-        write_dem(path, difference, crs_of(filtered.before), request.feedback)
+        crs, report = crs_of(filtered.before), request.progress(0.95)
+        write_dem(path, difference, crs, request.feedback, report)
         request.finish("DIFFERENCE", path, styles.style_difference)
         return {"DIFFERENCE": path}
 

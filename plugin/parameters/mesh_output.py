@@ -63,8 +63,8 @@ def mesh_packages(request: Request) -> tuple[dependencies.Package, ...]:
     return () if row is None or row.package is None else (dependencies.named(row.package),)
 
 
-def write_raster(request: Request, name: str, surface: Surface) -> str:
-    """Write a surface as a raster and return its path.
+def write_raster(request: Request, name: str, surface: Surface, start: float, stop: float) -> str:
+    """Write a surface as a raster, in a part of the bar, and return its path.
 
     The grid is that of the DEM the pyramid came from, or, with CELL_SIZE, one over the surface.
     """
@@ -73,17 +73,22 @@ def write_raster(request: Request, name: str, surface: Surface) -> str:
     from ..qgis_io.raster_writer import write_dem
 
     path = request.output_layer(name)
-    cell_size = request.size("CELL_SIZE")
+    cell_size, middle = request.size("CELL_SIZE"), (start + stop) / 2
     dem = request.computed(
-        lambda work: surface_dem(surface.geo, surface.mesh, cell_size=cell_size), 0.8, 0.85
+        lambda work: surface_dem(surface.geo, surface.mesh, cell_size=cell_size), start, middle
     )
-    write_dem(path, dem, crs_of(surface.geo), request.feedback)
+    write_dem(path, dem, crs_of(surface.geo), request.feedback, request.progress(middle, stop))
     request.finish(name, path, styles.style_hillshade)
     return path
 
 
-def write_mesh_file(request: Request, name: str, surface: Surface) -> str:
-    """Write a surface as a mesh file; a 2DM opens as a layer if there is a project."""
+def write_mesh_file(
+    request: Request, name: str, surface: Surface, start: float, stop: float
+) -> str:
+    """Write a surface as a mesh file, in a part of the bar.
+
+    A 2DM opens as a layer if there is a project.
+    """
     from wavelet_core.progress import report, watched_part
     from wavelet_gis.io.atomic import new_file
     from wavelet_gis.io.formats import suffix_of
@@ -95,7 +100,7 @@ def write_mesh_file(request: Request, name: str, surface: Surface) -> str:
             surface.write(scratch)
             report(work.progress, 1.0)  # the last moment at which it can be stopped
 
-    request.computed(write, 0.9, 1.0)
+    request.computed(write, start, stop)
     project = request.context.project()
     if suffix_of(path) == ".2dm" and project is not None:
         title = _title_of(request, name, path)

@@ -209,11 +209,14 @@ class Request:
         self._from, self._to = start, self._shown
 
     def _on_bar(self, start: float, stop: float) -> tuple[float, float]:
-        """Return where a part begins and ends on the bar, which never runs back."""
+        """Return where a part begins and ends on the bar, which never runs back.
+
+        One whose place has been passed by others has its width of what is left, at most half.
+        """
         scale = (1.0 - self._to) / (1.0 - self._from)
-        places = (self._to + scale * (part - self._from) for part in (start, stop))
-        begin, end = (max(place, self._shown) for place in places)
-        return begin, end
+        begin, end = (self._to + scale * (part - self._from) for part in (start, stop))
+        width = min(end - begin, (1.0 - self._shown) / 2)
+        return max(begin, self._shown), max(end, self._shown + width)
 
     def progress(self, start: float = 0.0, stop: float = 1.0) -> Callable[[float], bool]:
         """Return a progress function that drives a part of QGIS's bar.

@@ -95,7 +95,9 @@ def _write_dem(request: Request, restored: Reconstruction) -> dict[str, Any]:
     if not path:
         return {}
     assert isinstance(restored.original, Dem)
-    write_dem(path, restored.original, crs_of(restored.geo), request.feedback)
+    write_dem(
+        path, restored.original, crs_of(restored.geo), request.feedback, request.progress(0.9, 0.95)
+    )
     # Details without the coarsest surface, and a change, are about zero: no terrain to be shaded.
     is_difference = request.flag("DROP_COARSE") or request.text("LOOK") == "difference"
     style = styles.style_difference if is_difference else styles.style_hillshade

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from ..base import TerrainWaveletsAlgorithm
     from .request import Request
 
+#: What a surface is written to, in this order, and the part of the rest of the bar that it takes
+#: where an algorithm has something to write besides.
+OUTPUTS, BEFORE_MORE = ("TIN", "VERTICES", "RASTER", "MESH"), 0.95
+
 
 def add_cell_size_parameter(algorithm: TerrainWaveletsAlgorithm, description: str = "") -> None:
     """Declare CELL_SIZE, of a raster that is written; the description says what holds without."""
@@ -61,10 +65,17 @@ def surface_figures(surface: Surface) -> dict[str, Any]:
 
 
 def write_surface(request: Request, surface: Surface) -> dict[str, str]:
-    """Write a surface to the outputs TIN, VERTICES, RASTER and MESH, those that are wanted."""
-    results = tin_output.write_surface(request, surface)
-    if request.wants("RASTER"):
-        results["RASTER"] = mesh_output.write_raster(request, "RASTER", surface)
-    if request.wants("MESH"):
-        results["MESH"] = mesh_output.write_mesh_file(request, "MESH", surface)
+    """Write a surface to the outputs TIN, VERTICES, RASTER and MESH, those that are wanted.
+
+    Each has as much of what is left of the bar as the others.
+    """
+    request.begins_at(0.0)
+    wanted = [name for name in OUTPUTS if request.wants(name)]
+    width = BEFORE_MORE / max(len(wanted), 1)
+    parts = {name: (k * width, (k + 1) * width) for k, name in enumerate(wanted)}
+    results = tin_output.write_surface(request, surface, parts)
+    if "RASTER" in parts:
+        results["RASTER"] = mesh_output.write_raster(request, "RASTER", surface, *parts["RASTER"])
+    if "MESH" in parts:
+        results["MESH"] = mesh_output.write_mesh_file(request, "MESH", surface, *parts["MESH"])
     return results

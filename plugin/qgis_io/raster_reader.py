@@ -287,11 +287,20 @@ def _with_holes(dem: Dem, raster: RasterInput) -> Dem:
     return dem
 
 
-def strips(n_rows: int, n_columns: int, feedback: Stoppable) -> Iterator[tuple[int, int]]:
-    """Yield ``(start, stop)`` rows, with a look at the cancel button before each."""
+def strips(
+    n_rows: int,
+    n_columns: int,
+    feedback: Stoppable,
+    cells: int = STRIP_CELLS,
+    block_rows: int = 1,
+) -> Iterator[tuple[int, int]]:
+    """Yield ``(start, stop)`` rows of whole blocks, with a look at the cancel button before each.
+
+    Each is of about so many cells.
+    """
     from wavelet_core.errors import Cancelled
 
-    height = max(STRIP_CELLS // max(n_columns, 1), 1)
+    height = max(cells // max(n_columns * block_rows, 1), 1) * block_rows
     for start in range(0, n_rows, height):
         if feedback.isCanceled():
             raise Cancelled("cancelled between two strips of the raster")

@@ -25,12 +25,18 @@ if TYPE_CHECKING:
     from wavelet_gis.model.dem import Dem, GridGeometry
     from wavelet_gis.products.vertex_raster import Bands
 
-#: Of the time in which bands are written: all but their reading back.
+#: Of the time in which a raster is written: all but its reading back.
 _SHARE_OF_WRITING = 0.7
+#: Cells that are written between two looks at the cancel button: GDAL compresses them meanwhile.
+_CELLS_AT_ONCE = 1 << 18
 
 
 def write_dem(
-    path: str, dem: Dem, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback
+    path: str,
+    dem: Dem,
+    crs: QgsCoordinateReferenceSystem,
+    feedback: QgsFeedback,
+    report: Callable[[float], bool],
 ) -> None:
     """Write a ``Dem`` as a raster; the suffix chooses the format.
 
@@ -42,6 +48,8 @@ def write_dem(
     crs : QgsCoordinateReferenceSystem
     feedback : QgsProcessingFeedback
         Asked for cancel between strips.
+    report : callable
+        Takes the fraction that is done.
 
     Raises
     ------
@@ -67,7 +75,7 @@ def write_dem(
         n_rows, n_columns = dem.geometry.shape
         name = str(scratch) if first is last or driver_name == "GTiff" else ""
         dataset = first.Create(name, n_columns, n_rows, 1, gdal_type, options)
-        is_written = dataset is not None and _fill(dataset, dem, crs, feedback)
+        is_written = dataset is not None and _fill(dataset, dem, crs, feedback, report)
         if is_written and driver_name != "GTiff":
             copy = last.CreateCopy(str(scratch), dataset)
             is_written = copy is not None
@@ -75,7 +83,7 @@ def write_dem(
         dataset = None  # closes the file
         if not is_written:
             raise refusal(gdal.GetLastErrorMsg())
-        look = partial(_look, feedback)
+        look = partial(_look, feedback, report)
         read_back(scratch, partial(_check, values=dem.values[None], look=look))
 
 
@@ -118,22 +126,26 @@ def write_bands(
             band = dataset.GetRasterBand(k + 1)
             band.SetDescription(bands.names[k])
             band.SetNoDataValue(bands.nodata)
-            is_written &= _write_strips(band, bands.values[k], feedback)
+            told = _part_of_writing(report, k / n_bands, (k + 1) / n_bands)
+            is_written &= _write_strips(band, bands.values[k], feedback, told)
             band.FlushCache()
-            report(_SHARE_OF_WRITING * (k + 1) / n_bands)
         band = dataset = None  # closes the file
         if not is_written:
             raise refusal(gdal.GetLastErrorMsg())
-
-        def look(share: float) -> None:
-            require_running(feedback)
-            report(_SHARE_OF_WRITING + (1.0 - _SHARE_OF_WRITING) * share)
-
+        look = partial(_look, feedback, report)
         read_back(scratch, partial(_check, values=bands.values, look=look))
 
 
-def _look(feedback: QgsFeedback, share: float) -> None:
+def _part_of_writing(
+    report: Callable[[float], bool], start: float, stop: float
+) -> Callable[[float], bool]:
+    """Return what reports a part of the writing, of all that the output takes."""
+    return lambda share: report(_SHARE_OF_WRITING * (start + (stop - start) * share))
+
+
+def _look(feedback: QgsFeedback, report: Callable[[float], bool], share: float) -> None:
     require_running(feedback)
+    report(_SHARE_OF_WRITING + (1.0 - _SHARE_OF_WRITING) * share)
 
 
 def _check(
@@ -162,7 +174,13 @@ def _check(
                 raise OutputFileError(f"its values differ from row {start} on")
 
 
-def _fill(dataset: Any, dem: Dem, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback) -> bool:
+def _fill(
+    dataset: Any,
+    dem: Dem,
+    crs: QgsCoordinateReferenceSystem,
+    feedback: QgsFeedback,
+    report: Callable[[float], bool],
+) -> bool:
     _georeference(dataset, dem.geometry, crs)
     for key, value in dict(dem.profile.get("tags", {})).items():
         dataset.SetMetadataItem(str(key), str(value))
@@ -174,7 +192,8 @@ def _fill(dataset: Any, dem: Dem, crs: QgsCoordinateReferenceSystem, feedback: Q
         band.SetOffset(dem.offset)
     if dem.profile.get("unit"):
         band.SetUnitType(str(dem.profile["unit"]))
-    is_written = _write_strips(band, dem.values, feedback)
+    told = _part_of_writing(report, 0.0, 1.0)
+    is_written = _write_strips(band, dem.values, feedback, told)
     dataset.FlushCache()
     return is_written
 
@@ -186,12 +205,16 @@ def _georeference(dataset: Any, geometry: GridGeometry, crs: QgsCoordinateRefere
         dataset.SetProjection(crs.toWkt(WKT_FOR_GDAL))
 
 
-def _write_strips(band: Any, values: NDArray[Any], feedback: QgsFeedback) -> bool:
+def _write_strips(
+    band: Any, values: NDArray[Any], feedback: QgsFeedback, report: Callable[[float], bool]
+) -> bool:
     n_rows, n_columns = values.shape
-    for start, stop in strips(n_rows, n_columns, feedback):
+    block_rows = band.GetBlockSize()[1]
+    for start, stop in strips(n_rows, n_columns, feedback, _CELLS_AT_ONCE, block_rows):
         strip = np.ascontiguousarray(values[start:stop])
         if band.WriteRaster(0, start, n_columns, stop - start, strip.tobytes()) != 0:
             return False
+        report(stop / n_rows)
     return True
 
 

@@ -149,6 +149,43 @@ def test_the_bar_moves_every_second_while_the_work_says_nothing(qgis, width, sec
     assert moments[-1] > seconds - 1
 
 
+def test_a_part_whose_place_was_passed_has_room_too(qgis):
+    """The raster of a level after its TIN: the bar stood still for three seconds."""
+    from terrain_wavelets.plugin.parameters.request import Request
+
+    log = Log()
+    request = Request(None, {}, None, log)
+    request.computed(lambda work: None, 0.1, 0.9)
+    parts = [(0.2, 0.3), (0.5, 0.9), (0.3, 0.6), (0.1, 0.9)]
+    for start, stop in parts:
+        before = log.fractions[-1]
+        request.computed(lambda work: None, start, stop)
+        assert before + 0.5 < log.fractions[-1] < 100.0
+    request.progress(0.0, 0.5)(0.5)
+    assert log.fractions[-1] < 100.0
+    assert log.fractions == sorted(log.fractions)
+
+
+def test_writing_a_dem_moves_the_bar_and_heeds_cancel(qgis, provider, tmp_path):
+    from qgis.core import QgsCoordinateReferenceSystem, QgsFeedback
+    from terrain_wavelets.plugin.qgis_io.raster_writer import write_dem
+
+    from wavelet_core import Cancelled
+    from wavelet_gis.model.dem import Dem, GridGeometry
+
+    geometry = GridGeometry((1500, 1000), (1.0, 0.0, 5e5, 0.0, -1.0, 5e6))
+    values = np.zeros((1500, 1000), "f4")
+    dem = Dem(values, np.ones(values.shape, bool), geometry)
+    crs, seen = QgsCoordinateReferenceSystem("EPSG:25832"), []
+    write_dem(str(tmp_path / "a.tif"), dem, crs, QgsFeedback(), seen.append)
+    assert seen == sorted(seen)
+    assert len(seen) > 5
+    feedback = QgsFeedback()
+    with pytest.raises(Cancelled):
+        write_dem(str(tmp_path / "b.tif"), dem, crs, feedback, lambda share: feedback.cancel())
+    assert [path.name for path in tmp_path.iterdir()] == ["a.tif"]
+
+
 def test_computing_answers_a_cancel_and_moves_the_bar(qgis):
     """A step that asks nobody for long, as a triangulation does."""
     import threading

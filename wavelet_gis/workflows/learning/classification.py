@@ -31,6 +31,8 @@ N_BINS = 255
 
 #: Trees that are grown, and those between two looks at whether to stop.
 N_TREES, N_TREES_AT_ONCE = 80, 8
+#: Vertices whose prediction takes as long as growing them.
+GROWN_AS = 250_000
 
 #: Blocks in each direction by which validation is split; see `spatial_folds`.
 BLOCKS_PER_SIDE = 5
@@ -137,12 +139,13 @@ def learn_classes(
             f"the labels name {len(np.unique(labels[known]))} class; learning needs vertices of "
             "at least two."
         )
+    grown = GROWN_AS / (GROWN_AS + len(labels))
     with few_threads(half_of_the_cores()):
-        model = _fitted_trees(features.values, labels, known, seed, part_of(progress, 0.0, 0.6))
+        model = _fitted_trees(features.values, labels, known, seed, part_of(progress, 0.0, grown))
         probabilities = np.concatenate(
             [
                 model.predict_proba(features.values[rows])
-                for rows in blocks_of(len(labels), part_of(progress, 0.6, 1.0))
+                for rows in blocks_of(len(labels), part_of(progress, grown, 1.0))
             ]
         )
     report(progress, 1.0)

@@ -105,11 +105,11 @@ def learn(
                 "not learned from {names}, which hold the class itself or come from it",
                 names=", ".join(left_out),
             )
-        features = features_without(geo.pyramid, left_out, part_of(progress, 0.0, 0.5))
+        features = features_without(geo.pyramid, left_out, part_of(progress, 0.0, 0.6))
         validation = None
         if validate:
-            validation = _validated(geo, features, given, seed, part_of(progress, 0.5, 0.85))
-    classes = learn_classes(features, given, seed, part_of(progress, 0.85, 1.0))
+            validation = _validated(geo, features, given, seed, part_of(progress, 0.6, 0.75))
+    classes = learn_classes(features, given, seed, part_of(progress, 0.75, 1.0))
     is_given = given >= 0
     return Learned(
         np.where(is_given, given, classes.predicted),
@@ -168,7 +168,7 @@ def features_without(
     if left_out:
         pyramid = _analysed_without(pyramid, left_out, part_of(progress, 0.0, 0.3))
         start = 0.3
-    scales = scale_features(pyramid, part_of(progress, start, 0.95))
+    scales = scale_features(pyramid, part_of(progress, start, 0.65))
     return scales.joined_to(plain_features(pyramid))
 
 
