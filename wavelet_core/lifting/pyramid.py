@@ -103,6 +103,8 @@ class Pyramid:
     kept_record : KeptRecord or None
         The record by which a file describes it to a reader who has its input, where the analysis
         was asked to keep one.
+    coarse_faces : ndarray of int32, shape (n_faces, 3), or None
+        Faces of level 0 where they are known without following the collapses.
 
     Examples
     --------
@@ -127,6 +129,7 @@ class Pyramid:
     part: PyramidPart | None = field(default=None, compare=False)
     measured: tuple[LevelFigures, ...] | None = field(default=None, compare=False)
     kept_record: KeptRecord | None = field(default=None, compare=False)
+    coarse_faces: NDArray[np.int32] | None = field(default=None, compare=False)
 
     @classmethod
     def from_parts(
@@ -250,6 +253,18 @@ class Pyramid:
     def synthesise(self, level: int | None = None) -> TriangleMesh:
         """Return the mesh of a level; by default of the finest, which equals the input."""
         return self.mesh(self.n_levels if level is None else level)
+
+    def finest_on(self, mesh: TriangleMesh) -> TriangleMesh:
+        """Return the finest mesh, with the faces of the input, which are not copied.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            The input.
+        """
+        ids = self._ids_by_level(0)
+        *_, (_, coefficients) = self._coefficients(ids)
+        return self._assemble(coefficients, ids[self.n_levels], mesh.faces)
 
     def detail(self, level: int) -> Detail:
         """Return the detail layer of the step from ``level + 1`` to ``level``."""
@@ -475,6 +490,10 @@ class Pyramid:
 
     def _faces_of(self, level: int) -> NDArray[np.int32]:
         """Faces of one level, without those between."""
+        if level == self.n_levels:
+            return self.faces
+        if level == 0 and self.coarse_faces is not None:
+            return self.coarse_faces
         n_vertices = self.n_vertices(level)
         position = np.arange(n_vertices, dtype=np.int32)
         for step in self.steps[level:]:
@@ -515,7 +534,7 @@ class Pyramid:
             yield level + 1, coefficients
 
     def _assemble(
-        self, coefficients: FloatArray, ids: NDArray[np.int32], faces: NDArray[np.int32]
+        self, coefficients: FloatArray, ids: NDArray[np.int32], faces: NDArray[np.integer]
     ) -> TriangleMesh:
         if self.horizontal is None:
             vertices, attributes = coefficients[:, :3], coefficients[:, 3:]

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._threads import rows_at
 from .._validate import FloatArray
 
 
@@ -61,9 +62,10 @@ class VertexState(NamedTuple):
 
     def packed(self, slots: NDArray[np.int64], position: NDArray[np.int32]) -> VertexState:
         """Return the state of some slots, side by side; ``position`` says where slots went."""
-        packed = VertexState._make(array[slots] for array in self)
-        target = np.where(packed.target >= 0, position[packed.target], np.int32(-1))
-        return packed._replace(target=target)
+        packed = VertexState._make(rows_at(array, slots) for array in self)
+        known = np.flatnonzero(packed.target >= 0)
+        packed.target[known] = position[packed.target[known]]
+        return packed
 
     def copied(self) -> VertexState:
         """Return a copy that shares no array."""
@@ -101,7 +103,7 @@ class FaceState(NamedTuple):
 
     def packed(self, faces: NDArray[np.int64]) -> FaceState:
         """Return the state of some faces, side by side."""
-        return FaceState._make(array[faces] if len(array) else array for array in self)
+        return FaceState._make(rows_at(array, faces) if len(array) else array for array in self)
 
     def copied(self) -> FaceState:
         """Return a copy that shares no array."""

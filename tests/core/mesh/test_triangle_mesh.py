@@ -6,6 +6,8 @@ from helpers import assert_faces_have_area, euler_number
 from helpers_meshes import grid_with_holes
 
 from wavelet_core import MeshError, TriangleMesh, analyse, synthetic
+from wavelet_core._kernels._jit import engine
+from wavelet_core.mesh.triangle_mesh import grid_faces
 from wavelet_core.mesh.triangulation import merge_duplicates
 
 SQUARE = np.array([[0.0, 0, 1], [1, 0, 2], [1, 1, 3], [0, 1, 4]])
@@ -179,6 +181,22 @@ def test_a_grid_with_many_holes_has_sound_faces():
 
 
 # --- from_points ------------------------------------------------------------------------------
+
+
+def test_the_engines_give_a_grid_the_same_faces():
+    rng = np.random.default_rng(4)
+    for shape in ((1, 1), (1, 5), (7, 1), (9, 13)):
+        valid = rng.random(shape) < 0.7
+        for clockwise in (False, True):
+            by_engine = []
+            for name in ("loops", "arrays"):
+                with engine(name):
+                    by_engine.append(grid_faces(valid, clockwise))
+            np.testing.assert_array_equal(*by_engine)
+    counts = [
+        len(grid_faces(np.array(v, bool).reshape(2, 2), False)) for v in np.ndindex(2, 2, 2, 2)
+    ]
+    assert counts == [max(sum(v) - 2, 0) for v in np.ndindex(2, 2, 2, 2)]
 
 
 def test_points_in_any_order_are_all_used():
