@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._threads import rows_at
 from .._validate import FloatArray
 
 
@@ -60,13 +59,6 @@ class VertexState(NamedTuple):
             z_changed=np.zeros(n, dtype=bool),
         )
 
-    def packed(self, slots: NDArray[np.int64], position: NDArray[np.int32]) -> VertexState:
-        """Return the state of some slots, side by side; ``position`` says where slots went."""
-        packed = VertexState._make(rows_at(array, slots) for array in self)
-        known = np.flatnonzero(packed.target >= 0)
-        packed.target[known] = position[packed.target[known]]
-        return packed
-
     def copied(self) -> VertexState:
         """Return a copy that shares no array."""
         return VertexState._make(array.copy() for array in self)
@@ -100,10 +92,6 @@ class FaceState(NamedTuple):
             squared_z=np.zeros(n_measured if n_channels > 1 else 0),
             largest_z=np.zeros(n_measured),
         )
-
-    def packed(self, faces: NDArray[np.int64]) -> FaceState:
-        """Return the state of some faces, side by side."""
-        return FaceState._make(rows_at(array, faces) if len(array) else array for array in self)
 
     def copied(self) -> FaceState:
         """Return a copy that shares no array."""

@@ -440,6 +440,11 @@ class SurfaceLevel:
 
     def remove(self, odd: NDArray[np.int32]) -> CollapseStep:
         """Collapse the odd vertices, predict, update; return the step, details as weighted."""
+        step = self._remove(odd)
+        self._pack()  # when the rings are no longer there
+        return step
+
+    def _remove(self, odd: NDArray[np.int32]) -> CollapseStep:
         odd, indptr, ring, ring_faces = self._collapse(odd)
         corners, weights, details = self._hand_over(odd, indptr, ring, ring_faces)
         vertices = self._vertices
@@ -455,7 +460,7 @@ class SurfaceLevel:
                 vertices.integrals, self._surface.z, vertices.z_changed,
             )  # fmt: skip
         self._bring_sums_up_to_date()
-        step = CollapseStep(
+        return CollapseStep(
             frozen(fine_position[odd]),
             frozen(fine_position[ring[indptr[:-1]]]),
             frozen(row_indptr),
@@ -463,8 +468,6 @@ class SurfaceLevel:
             frozen(row_weights),
             details,
         )
-        self._pack()
-        return step
 
     def _collapse(
         self, odd: NDArray[np.int32]
@@ -574,7 +577,9 @@ class SurfaceLevel:
         """Close the gaps once there are many."""
         if self.n_vertices > PACKED_SHARE * len(self._vertices.ids):
             return
-        vertices, faces = np.flatnonzero(self._vertices.lives), np.flatnonzero(self._faces.lives)
+        vertices, faces = (
+            np.flatnonzero(state.lives).astype(np.int32) for state in (self._vertices, self._faces)
+        )
         position = np.full(len(self._vertices.ids), -1, dtype=np.int32)
         position[vertices] = np.arange(len(vertices), dtype=np.int32)
         face_position = np.full(len(self._faces.lives), -1, dtype=np.int32)
@@ -588,25 +593,29 @@ class SurfaceLevel:
         run_in_ranges(pack_faces, len(faces), faces, position, face_position, self._mesh, packed)
         run_in_ranges(pack_vertices, len(vertices), vertices, face_position, self._mesh, packed)
         self._mesh = packed
-        self._surface = Surface(*(rows_at(array, vertices) for array in self._surface))
-        self._points = self._points._replace(
-            start=rows_at(self._points.start, faces),
-            n_points=rows_at(self._points.n_points, faces),
-        )
-        self._vertices = self._vertices.packed(vertices, position)
-        self._faces = self._faces.packed(faces)
+        # one array after the other, so that hardly any is there twice at a time
+        for state, names, places, n_rows in (
+            ("_surface", Surface._fields, vertices, 1),
+            ("_points", ("start", "n_points"), faces, 1),
+            ("_vertices", VertexState._fields, vertices, 1),
+            ("_faces", FaceState._fields, faces, 1),
+            ("_moments", ("vertex_slope", "vertex_weight"), vertices, 1),
+            ("_moments", ("slope", "weight"), faces, 3),
+        ):
+            for name in names:
+                self._pack_array(state, name, places, n_rows)
+        known = np.flatnonzero(self._vertices.target >= 0)
+        self._vertices.target[known] = position[self._vertices.target[known]]
         if len(self._outline.ids):
             self._outline = self._outline._replace(ids=self._vertices.ids)
-        if len(self._moments.weight):
-            n_channels = self._moments.slope.shape[1]
-            self._moments = Moments(
-                rows_at(self._moments.slope.reshape(-1, 3 * n_channels), faces).reshape(
-                    -1, n_channels
-                ),
-                rows_at(self._moments.weight.reshape(-1, 3), faces).ravel(),
-                rows_at(self._moments.vertex_slope, vertices),
-                rows_at(self._moments.vertex_weight, vertices),
-            )
+
+    def _pack_array(self, of: str, name: str, places: NDArray[np.int32], n_rows: int) -> None:
+        """Keep those rows of an array that places have, ``n_rows`` side by side each."""
+        state = getattr(self, of)
+        array = getattr(state, name)
+        if len(array):
+            rows = rows_at(array.reshape(len(array) // n_rows, -1), places)
+            setattr(self, of, state._replace(**{name: rows.reshape(-1, *array.shape[1:])}))
 
     def snapshot(self) -> SurfaceLevel:
         """Return a copy to go back to; points already in place are never overwritten."""
