@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._threads import centre_of
 from .._validate import FloatArray
 from ..lifting.pyramid import Pyramid
 from ..mesh.location import surface_errors
@@ -68,12 +69,12 @@ def level_errors(
     """
     finest = pyramid.synthesise() if finest is None else finest
     points = finest.vertices if points is None else points
-    reference = _columns(finest)
-    extent = reference.max(axis=0) - reference.min(axis=0)
+    extent = np.concatenate([centre_of(part)[1] for part in (finest.vertices, finest.attributes)])
     scale = np.where(extent > 0, extent, 1.0)
     merged = _merged_points(finest, points)
     if pyramid.measured is not None and merged is not None:
         return _from_analysis(pyramid, progress, merged, extent)
+    reference = _columns(finest)
     rows = []
     for level, mesh in enumerate(pyramid):
         ids = pyramid.vertex_ids(level)

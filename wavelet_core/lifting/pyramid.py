@@ -262,9 +262,10 @@ class Pyramid:
         mesh : TriangleMesh
             The input.
         """
-        ids = self._ids_by_level(0)
-        *_, (_, coefficients) = self._coefficients(ids)
-        return self._assemble(coefficients, ids[self.n_levels], mesh.faces)
+        ids = {} if self.locked is None else self._ids_by_level(0)
+        for _, coefficients in self._coefficients(ids):  # noqa: B007
+            pass
+        return self._assemble(coefficients, slice(None), mesh.faces)
 
     def detail(self, level: int) -> Detail:
         """Return the detail layer of the step from ``level + 1`` to ``level``."""
@@ -514,12 +515,12 @@ class Pyramid:
         return by_level
 
     def _coefficients(self, ids: dict[int, NDArray[np.int32]]) -> Iterator[tuple[int, FloatArray]]:
-        """Scaling coefficients from level 0 up."""
+        """Scaling coefficients from level 0 up; ids are looked at where vertices are locked."""
         coefficients = self.coarse
         yield 0, coefficients
         integrals = self._integrals_by_level(0) if UPDATES[self.update].uses_integrals else {}
         for level, step in enumerate(self.steps):
-            n_fine = len(ids[level + 1])
+            n_fine = len(coefficients) + step.n_odd
             even = even_positions(step.odd, n_fine)
             coefficients = synthesise_level(
                 coefficients,
@@ -528,19 +529,18 @@ class Pyramid:
                 even,
                 step.prediction(len(even)),
                 self.update,
-                integrals.pop(level + 1) if integrals else np.ones(n_fine),
-                self._locked(ids[level + 1]),
+                integrals[level + 1] if integrals else np.ones(n_fine),
+                np.zeros(n_fine, bool) if self.locked is None else self.locked[ids[level + 1]],
+                integrals.pop(level, None),
             )
             yield level + 1, coefficients
 
     def _assemble(
-        self, coefficients: FloatArray, ids: NDArray[np.int32], faces: NDArray[np.integer]
+        self, coefficients: FloatArray, ids: NDArray[np.int32] | slice, faces: NDArray[np.integer]
     ) -> TriangleMesh:
         if self.horizontal is None:
-            vertices, attributes = coefficients[:, :3], coefficients[:, 3:]
+            vertices, attributes = coefficients[:, :3].copy(), coefficients[:, 3:].copy()
         else:
             vertices = np.column_stack([self.horizontal[ids], coefficients[:, 0]])
-            attributes = coefficients[:, 1:]
-        return TriangleMesh._trusted(
-            vertices.copy(), faces, attributes.copy(), self.attribute_names
-        )
+            attributes = coefficients[:, 1:].copy()
+        return TriangleMesh._trusted(vertices, faces, attributes, self.attribute_names)
