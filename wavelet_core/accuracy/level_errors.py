@@ -13,6 +13,7 @@ from ..lifting.pyramid import Pyramid
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Progress, report
+from .few_points import errors_by_level
 
 #: Heights that differ by no more than this part of the largest are those of one point.
 SAME_HEIGHT = 1e-9
@@ -120,13 +121,12 @@ def _from_analysis(
     """
     assert pyramid.measured is not None
     scale = np.where(extent > 0, extent, 1.0)[2:]
-    meshes = iter(pyramid) if len(merged) else repeat(None)
+    by_level = errors_by_level(pyramid, merged) if len(merged) else repeat(None)
     rows = []
-    for level, (figures, mesh) in enumerate(zip(pyramid.measured, meshes, strict=False)):
+    for level, (figures, errors) in enumerate(zip(pyramid.measured, by_level, strict=False)):
         squared, largest, n_uncovered = figures.squared_errors, figures.largest_error, 0
         n_points = figures.n_points + len(merged)
-        if mesh is not None:
-            errors = surface_errors(mesh, merged)
+        if errors is not None:
             covered = errors[np.isfinite(errors)]
             squared += float((covered**2).sum())
             largest = max(largest, float(np.abs(covered).max(initial=0.0)))

@@ -178,7 +178,7 @@ class Pyramid:
 
     def __iter__(self) -> Iterator[TriangleMesh]:
         ids = self._ids_by_level(0)
-        faces = self._faces_by_level(0)
+        faces = list(self._faces_downwards())
         for level, coefficients in self._coefficients(ids):
             yield self._assemble(coefficients, ids[level], faces.pop())
 
@@ -478,16 +478,15 @@ class Pyramid:
             ids[level] = current
         return ids
 
-    def _faces_by_level(self, lowest: int) -> list[NDArray[np.int32]]:
-        """Faces of each level, finest first, down to ``lowest``."""
+    def _faces_downwards(self, lowest: int = 0) -> Iterator[NDArray[np.int32]]:
+        """Yield the faces of each level, finest first, down to ``lowest``."""
         faces, n_vertices = self.faces, self.n_vertices(self.n_levels)
-        by_level = [faces]
+        yield faces
         for level in range(self.n_levels - 1, lowest - 1, -1):
             step = self.steps[level]
             faces = merged_faces(faces, merge_map(step.odd, step.target, n_vertices))
             n_vertices -= step.n_odd
-            by_level.append(faces)
-        return by_level
+            yield faces
 
     def _faces_of(self, level: int) -> NDArray[np.int32]:
         """Faces of one level, without those between."""
