@@ -12,7 +12,7 @@ from .packages import ICON, PLUGIN_FOLDER, install_finder
 from .parameters.request import Request
 from .ui import dependencies
 from .ui.enums import ADVANCED
-from .ui.exceptions import QgsProcessingException
+from .ui.exceptions import QgsProcessingException, held_by_nobody
 from .ui.translation import tr
 from .ui.warning_log import shown_in
 from .ui.wording import in_words, labels_of
@@ -144,6 +144,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         """Return what these parameters need beyond NumPy and SciPy."""
         return self.PACKAGES
 
+    @held_by_nobody
     def prepareAlgorithm(
         self,
         parameters: Values,
@@ -175,6 +176,7 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
     def take_layers(self, request: Request) -> None:
         """Take from layers, in their own thread, what `work` needs of them."""
 
+    @held_by_nobody
     def processAlgorithm(
         self,
         parameters: Values,

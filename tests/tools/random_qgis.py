@@ -216,6 +216,7 @@ class Bench:
     def run(self, number: int):
         """Run one algorithm and return what was seen."""
         from qgis.core import (
+            QgsApplication,
             QgsProcessingContext,
             QgsProcessingFeedback,
             QgsProcessingModelAlgorithm,
@@ -290,6 +291,7 @@ class Bench:
         self.project.clear()
         del results, context, log, algorithm
         gc.collect()
+        QgsApplication.processEvents()  # connections to files are closed by timers, a minute later
         known = {os.path.basename(str(v)).split(".")[0] for v in parameters.values()}
         strays = [
             path.name

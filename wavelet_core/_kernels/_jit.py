@@ -32,6 +32,7 @@ from typing import Any
 from .._threads import n_threads
 from ..errors import OptionError, SlowFallbackWarning
 from ..progress import report_share
+from ._calls import called_past_leak
 
 #: Set to any non-empty value to run without numba even where it is installed.
 DISABLE_VARIABLE = "TERRAIN_WAVELETS_NO_NUMBA"
@@ -114,6 +115,7 @@ class Kernel:
         functools.update_wrapper(self, loops)
         self.loops = loops
         self.compiled = njit(loops)
+        self.call = called_past_leak(self.compiled, _numba)
         _steps.append(self)
 
     @property
@@ -139,7 +141,7 @@ class Kernel:
         """Run it on the present engine, over all of its items."""
         name = current_engine()
         if name == "compiled":
-            return self.compiled(*arguments)
+            return self.call(*arguments)
         if name == "arrays" and self.arrays is not None:
             return self.arrays(*arguments)
         return self.loops(*arguments)
@@ -238,7 +240,7 @@ def run_in_ranges(step: Kernel, n_items: int, *arguments: Any, called: str = "")
     if name != "compiled" or n_items < 4096:
         step(0, n_items, *arguments)
         return
-    run = step.compiled
+    run = step.call
     n_ranges = max(4 * threads, n_items // _ITEMS_BETWEEN_REPORTS)
     bounds = [n_items * k // n_ranges for k in range(n_ranges + 1)]
     run(0, 0, *arguments)  # compiled once, before the threads race for it

@@ -173,6 +173,35 @@ class TestCancelledBetweenOutputs:
         assert len(held) == 1
         assert held[0]() is None
 
+    @pytest.mark.parametrize("output", ["memory:", "/no/such/folder/levels.gpkg"])
+    def test_a_refusal_is_not_held_by_qgis(self, qgis, pyramid, output):
+        """Neither one of the work nor one before it; else steps of a model kept their layers."""
+        import gc
+        import weakref
+
+        from qgis.core import QgsProcessingContext
+
+        held = []
+
+        class Large:
+            pass
+
+        def refused():
+            large = Large()
+            algorithm = qgis.processingRegistry().algorithmById("terrainwavelets:extractlevel")
+            algorithm = algorithm.create()
+            held.extend([weakref.ref(large), weakref.ref(algorithm)])
+            log, parameters = Log(), {"INPUT": pyramid, "LEVEL": 99, "TIN": output}
+            _, is_done = algorithm.run(parameters, QgsProcessingContext(), log)
+            assert not is_done
+            assert len(log.errors) == 1
+
+        refused()
+        gc.collect()
+        of_caller, algorithm = held
+        assert of_caller() is None
+        assert algorithm() is None
+
     def test_a_layer_that_features_are_added_to_stays(self, qgis, pyramid, tmp_path):
         """It holds what the user had in it before."""
         import processing
