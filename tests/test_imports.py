@@ -22,6 +22,7 @@ ROOMS = {
     "wavelet_core": (
         "errors",
         "progress",
+        "_threads",
         "_table",
         "_validate",
         "_kernels",

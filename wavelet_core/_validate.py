@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from ._threads import run_in_blocks
 from .errors import MeshError, OptionError
 
 FloatArray = NDArray[np.float64]
@@ -112,6 +113,15 @@ def as_faces(faces: ArrayLike, n_vertices: int) -> IntArray:
     if array.dtype.kind not in "iu":
         raise MeshError(f"faces have dtype {array.dtype}; give integer vertex indices.")
     array = np.array(array, dtype=np.int64, order="C")
+
+    def are_sound(start: int, stop: int) -> bool:
+        a, b, c = array[start:stop].T
+        is_twice = (a == b) | (b == c) | (c == a)
+        block = array[start:stop]
+        return bool(block.min() >= 0 and block.max() < n_vertices and not is_twice.any())
+
+    if all(run_in_blocks(are_sound, len(array))):
+        return array
     if array.min() < 0 or array.max() >= n_vertices:
         face = int(np.argmax(((array < 0) | (array >= n_vertices)).any(axis=1)))
         raise MeshError(
@@ -120,15 +130,12 @@ def as_faces(faces: ArrayLike, n_vertices: int) -> IntArray:
             face,
         )
     a, b, c = array.T
-    twice = (a == b) | (b == c) | (c == a)
-    if twice.any():
-        face = int(np.argmax(twice))
-        raise MeshError(
-            f"face {face} uses a vertex twice {array[face].tolist()}, so it has no area; "
-            "remove it from the input triangulation.",
-            face,
-        )
-    return array
+    face = int(np.argmax((a == b) | (b == c) | (c == a)))
+    raise MeshError(
+        f"face {face} uses a vertex twice {array[face].tolist()}, so it has no area; "
+        "remove it from the input triangulation.",
+        face,
+    )
 
 
 def as_attributes(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from time import perf_counter
 
+from wavelet_gis._memory import give_memory_back
+
 __all__ = ["Clock"]
 
 
@@ -17,6 +19,7 @@ class Clock:
 
     def stage(self, name: str) -> None:
         """Begin the part of this name."""
+        give_memory_back()
         self._began.append((name, perf_counter()))
         if self._on_stage is not None:
             self._on_stage(name)

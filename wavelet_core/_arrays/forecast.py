@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._kernels.forecast import NO_FORECAST
 from .._kernels.outline import STAYS
 from .._kernels.surface_cost import NONE
 from ._csr import blocks
@@ -26,14 +27,24 @@ class _Limits(NamedTuple):
 
 
 def forecast_collapses(
-    start, stop, todo, mesh, surface, stays, locked, outline, height_step, best, second
+    start, stop, todo, mesh, surface, stays, locked, outline, height_step, negligible, best, second
 ):
-    best[todo], second[todo] = np.inf, np.inf
+    best[todo], second[todo] = NO_FORECAST, NO_FORECAST
     for rows, _, targets in _ranked(todo, mesh, surface, stays, locked, outline, height_step):
         each, v = np.arange(len(rows)), todo[rows]
         for place, errors in ((0, best), (1, second)):
             known = targets.n_legal > place
-            errors[v[known]] = targets.own[each, targets.order[:, place]][known]
+            squared = targets.own[each, targets.order[:, place]][known]
+            errors[v[known]] = coded(squared, negligible)
+
+
+def coded(squared, negligible):
+    """Return the upper half of each number in single precision, which keeps the order."""
+    with np.errstate(over="ignore"):
+        single = np.where(squared <= negligible, 0.0, squared).astype(np.float32)
+    code = (single.view(np.uint32) >> np.uint32(16)).astype(np.uint16)
+    code[~np.isfinite(single)] = NO_FORECAST
+    return code
 
 
 def match_targets(

@@ -19,6 +19,31 @@ def sort_into_cells(plan, x0, y0, size, n_columns, n_rows, cell_indptr, order):
     order[:] = np.argsort(cell, kind="stable")
 
 
+def find_faces_near(start, stop, faces, ids, x, y, x0, y0, size, counts, is_near):
+    for first in range(start, stop, 1 << 16):
+        block = slice(first, min(first + (1 << 16), stop))
+        corners = ids[faces[block]]
+        cells = []
+        for places, origin, n in ((x, x0, counts.shape[1] - 1), (y, y0, counts.shape[0] - 1)):
+            low, high = places[corners].min(axis=1), places[corners].max(axis=1)
+            cells.append((low, high, origin, n))
+        (left, right, *_), (bottom, top, *_) = cells
+        margin = 8.0 * EDGE_TOLERANCE * ((right - left) + (top - bottom))
+        begins, ends = [], []
+        for low, high, origin, n in cells:
+            begins.append(_cells_of((low - margin - origin) / size, n).clip(0))
+            ends.append(np.minimum(_cells_of((high + margin - origin) / size, n), n - 1))
+        inside = (begins[0] <= ends[0]) & (begins[1] <= ends[1])
+        (a, c), (b, d) = (part[inside] for part in begins), (part[inside] + 1 for part in ends)
+        within = counts[d, b] - counts[c, b] - counts[d, a] + counts[c, a]
+        is_near[block] = inside
+        is_near[block][inside] = within > 0
+
+
+def _cells_of(place, n):
+    return np.floor(np.clip(place, -1.0, float(n))).astype(np.int64)
+
+
 def cover_points(
     vertices, faces, points, x0, y0, size, n_columns, n_rows, cell_indptr, order, face_of, weights
 ):

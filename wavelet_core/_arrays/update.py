@@ -7,6 +7,7 @@ row that comes before all others with which it shares one can be applied, and al
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from ._csr import expanded, summed
 
@@ -20,6 +21,27 @@ def minimum_norm_columns(indptr, columns, odd_integrals, integrals, locked, valu
         odd_integrals, squared, out=np.zeros(len(odd_integrals)), where=squared > 0.0
     )
     values[free] = of * factor[row]
+
+
+def predict_rows(start, stop, indptr, columns, weights, coarse, predicted):
+    first, last = indptr[start], indptr[stop]
+    rows = csr_array(
+        (weights[first:last], columns[first:last], indptr[start : stop + 1] - first),
+        shape=(stop - start, len(coarse)),
+    )
+    predicted[start:stop] = rows @ coarse
+
+
+def spread_integrals(indptr, columns, weights, odd_integrals, integrals):
+    added = weights * np.repeat(odd_integrals, np.diff(indptr))
+    integrals[:] = summed(columns, added, integrals)
+
+
+def minimum_norm_changes(indptr, columns, odd_integrals, integrals, locked, details, changes):
+    values = np.zeros(len(columns))
+    minimum_norm_columns(indptr, columns, odd_integrals, integrals, locked, values)
+    rows = csr_array((values, columns, indptr), shape=(len(details), len(changes)))
+    changes[:] = rows.T @ details  # one row of `rows` after the other
 
 
 def add_ring_means(indptr, columns, weights, details, locked, even):

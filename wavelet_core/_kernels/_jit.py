@@ -29,6 +29,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
+from .._threads import n_threads
 from ..errors import OptionError, SlowFallbackWarning
 from ..progress import report_share
 from ._calls import called_past_leak
@@ -37,8 +38,6 @@ from ._calls import called_past_leak
 DISABLE_VARIABLE = "TERRAIN_WAVELETS_NO_NUMBA"
 #: One of ``ENGINES``, instead of the fastest that is there.
 ENGINE_VARIABLE = "TERRAIN_WAVELETS_ENGINE"
-#: Number of threads for the kernels; all cores when unset.
-THREADS_VARIABLE = "TERRAIN_WAVELETS_THREADS"
 ENGINES = ("compiled", "arrays", "loops")
 #: Above this many items a kernel without a twin is refused where it would run as plain loops: they
 #: take a fraction of a millisecond an item.
@@ -217,25 +216,6 @@ def _stamp_of_all_kernels() -> tuple[tuple[str, int, int], ...]:
     """Name, time of change and size of every file of kernels."""
     files = sorted(Path(__file__).parent.glob("*.py"))
     return tuple((file.name, file.stat().st_mtime_ns, file.stat().st_size) for file in files)
-
-
-def n_threads() -> int:
-    """Return how many threads kernels take: the environment's wish, else the number of cores.
-
-    Raises
-    ------
-    OptionError
-        The environment wishes for what is no number of threads.
-    """
-    wish = os.environ.get(THREADS_VARIABLE, "").strip()
-    if not wish:
-        return os.cpu_count() or 1
-    if not (wish.isascii() and wish.isdigit() and int(wish) > 0):
-        raise OptionError(
-            f"{THREADS_VARIABLE} is {wish!r}; give a whole number of 1 or more, or leave the "
-            "variable out."
-        )
-    return int(wish)
 
 
 def run_in_ranges(step: Kernel, n_items: int, *arguments: Any, called: str = "") -> None:

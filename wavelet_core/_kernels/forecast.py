@@ -11,6 +11,9 @@ from .half_edges import MAX_RING, walk_ring
 from .outline import STAYS, outline_rule
 from .surface_cost import NONE, is_enclosed, legal_targets, place_ring
 
+# the code of "no forecast"; those of forecasts are lower
+NO_FORECAST = 0xFFFF
+
 
 # Room for what `targets_in_order` fills, in the order of its arguments; see surface_cost.
 @njit
@@ -46,11 +49,24 @@ def targets_in_order(
     )  # fmt: skip
 
 
-# best, second (n,) float64 of all vertices, filled for those of todo (k,) int32: the squared detail
-# that the best legal collapse of each leaves, and the next best; inf where there is none
+# The upper half of a number in single precision, which keeps the order; bits (1,) uint32 is single
+# (1,) float32 seen otherwise
+@inlined
+def coded(squared, negligible, single, bits):
+    if squared <= negligible:
+        return 0
+    single[0] = squared
+    if not single[0] < np.inf:
+        return NO_FORECAST
+    return bits[0] >> 16
+
+
+# best, second (n,) uint16 of all vertices, filled for those of todo (k,) int32: the codes of the
+# squared detail that the best legal collapse of each leaves, and of the next best. Up to
+# `negligible` it is nothing.
 @kernel
 def forecast_collapses(
-    start, stop, todo, mesh, surface, stays, locked, outline, height_step, best, second
+    start, stop, todo, mesh, surface, stays, locked, outline, height_step, negligible, best, second
 ):
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     x, y, z = surface.x, surface.y, surface.z
@@ -58,14 +74,19 @@ def forecast_collapses(
         ring, spoke, ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover,
         cover_weights,
     ) = workspace(z.shape[1])  # fmt: skip
+    single = np.zeros(1, np.float32)
+    bits = single.view(np.uint32)
     for q in range(start, stop):
         v = todo[q]
         n_legal = targets_in_order(
             v, origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring, spoke,
             ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover, cover_weights,
         )  # fmt: skip
-        best[v] = own_error[order[0]] if n_legal > 0 else np.inf
-        second[v] = own_error[order[1]] if n_legal > 1 else np.inf
+        best[v] = second[v] = NO_FORECAST
+        if n_legal > 0:
+            best[v] = coded(own_error[order[0]], negligible, single, bits)
+        if n_legal > 1:
+            second[v] = coded(own_error[order[1]], negligible, single, bits)
 
 
 # rank (k,) int32: places among the legal targets; target (k,) int32: those targets. Where rank is

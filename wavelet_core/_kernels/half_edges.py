@@ -94,7 +94,7 @@ def moved(half_edge, face_position):
     return 3 * face_position[half_edge // 3] + half_edge % 3 if half_edge >= 0 else -1
 
 
-# Half-edges of the faces (m,) int64 that live on, renumbered; packed: HalfEdges, filled.
+# Half-edges of the faces (m,) int32 that live on, renumbered; packed: HalfEdges, filled.
 # position (n,), face_position (n_faces,) int32: where each vertex and face goes
 @kernel
 def pack_faces(start, stop, faces, position, face_position, mesh, packed):
@@ -105,7 +105,7 @@ def pack_faces(start, stop, faces, position, face_position, mesh, packed):
             packed.twin[3 * k + corner] = moved(mesh.twin[half_edge], face_position)
 
 
-# The same for the vertices (n,) int64 that live on
+# The same for the vertices (n,) int32 that live on
 @kernel
 def pack_vertices(start, stop, vertices, face_position, mesh, packed):
     for k in range(start, stop):

@@ -36,6 +36,27 @@ def cell_of(place, n):
     return math.floor(min(max(place, -1.0), float(n)))
 
 
+# Which faces have bounds that share a cell with a point? faces (m, 3) int32 of places in ids (n,)
+# int32; x, y float64 by id; counts (n_rows + 1, n_columns + 1) int64, of the points below and to
+# the left, in cells of that size from (x0, y0) on; is_near (m,) bool, filled
+@kernel
+def find_faces_near(start, stop, faces, ids, x, y, x0, y0, size, counts, is_near):
+    n_rows, n_columns = counts.shape[0] - 1, counts.shape[1] - 1
+    for face in range(start, stop):
+        a, b, c = ids[faces[face, 0]], ids[faces[face, 1]], ids[faces[face, 2]]
+        left, right = min(x[a], x[b], x[c]), max(x[a], x[b], x[c])
+        bottom, top = min(y[a], y[b], y[c]), max(y[a], y[b], y[c])
+        margin = 8.0 * EDGE_TOLERANCE * ((right - left) + (top - bottom))
+        first = max(cell_of((left - margin - x0) / size, n_columns), 0)
+        last = min(cell_of((right + margin - x0) / size, n_columns), n_columns - 1)
+        lowest = max(cell_of((bottom - margin - y0) / size, n_rows), 0)
+        highest = min(cell_of((top + margin - y0) / size, n_rows), n_rows - 1)
+        is_near[face] = False
+        if first <= last and lowest <= highest:
+            within = counts[highest + 1, last + 1] - counts[lowest, last + 1]
+            is_near[face] = within - counts[highest + 1, first] + counts[lowest, first] > 0
+
+
 # vertices (n, >= 2), points (n_points, >= 2) float64, of which x and y count; faces (n_faces, 3)
 # int; face_of (n_points,) int64, -1 on entry: filled with the first face that covers each point,
 # weights (n_points, 2) with those of its second and third corner

@@ -1,4 +1,4 @@
-"""Kernels of the updates: minimum norm, and the sequential one-ring mean."""
+"""Kernels of the filters: prediction, minimum-norm update, sequential one-ring mean."""
 
 from ._jit import kernel, njit
 
@@ -27,6 +27,38 @@ def minimum_norm_columns(indptr, columns, odd_integrals, integrals, locked, valu
         for k in range(first, last):
             if not locked[columns[k]]:
                 values[k] = integrals[columns[k]] * factor
+
+
+# P @ coarse, row by row; predicted (n_odd, n_channels) float64, filled
+@kernel
+def predict_rows(start, stop, indptr, columns, weights, coarse, predicted):
+    for row in range(start, stop):
+        for channel in range(coarse.shape[1]):
+            total = 0.0
+            for k in range(indptr[row], indptr[row + 1]):
+                total += weights[k] * coarse[columns[k], channel]
+            predicted[row, channel] = total
+
+
+# Eq. 47: integrals (n_even,) float64 of the finer level, changed to those of the coarser one
+@kernel
+def spread_integrals(indptr, columns, weights, odd_integrals, integrals):
+    for row in range(odd_integrals.shape[0]):
+        for k in range(indptr[row], indptr[row + 1]):
+            integrals[columns[k]] += weights[k] * odd_integrals[row]
+
+
+# U @ details of the minimum-norm update; changes (n_even, n_channels) float64, zeros, filled
+@kernel
+def minimum_norm_changes(indptr, columns, odd_integrals, integrals, locked, details, changes):
+    for row in range(odd_integrals.shape[0]):
+        first, last = indptr[row], indptr[row + 1]
+        factor = minimum_norm_factor(first, last, columns, odd_integrals[row], integrals, locked)
+        for k in range(first, last):
+            if not locked[columns[k]]:
+                value = integrals[columns[k]] * factor
+                for channel in range(details.shape[1]):
+                    changes[columns[k], channel] += value * details[row, channel]
 
 
 # The constant that Eq. 46 adds to the unlocked ring of one odd vertex, for one channel:

@@ -7,11 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .._threads import centre_of
 from .._validate import FloatArray
 from ..lifting.pyramid import Pyramid
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Progress, report
+from .few_points import errors_by_level
 
 #: Heights that differ by no more than this part of the largest are those of one point.
 SAME_HEIGHT = 1e-9
@@ -68,12 +70,12 @@ def level_errors(
     """
     finest = pyramid.synthesise() if finest is None else finest
     points = finest.vertices if points is None else points
-    reference = _columns(finest)
-    extent = reference.max(axis=0) - reference.min(axis=0)
+    extent = np.concatenate([centre_of(part)[1] for part in (finest.vertices, finest.attributes)])
     scale = np.where(extent > 0, extent, 1.0)
     merged = _merged_points(finest, points)
     if pyramid.measured is not None and merged is not None:
         return _from_analysis(pyramid, progress, merged, extent)
+    reference = _columns(finest)
     rows = []
     for level, mesh in enumerate(pyramid):
         ids = pyramid.vertex_ids(level)
@@ -119,13 +121,12 @@ def _from_analysis(
     """
     assert pyramid.measured is not None
     scale = np.where(extent > 0, extent, 1.0)[2:]
-    meshes = iter(pyramid) if len(merged) else repeat(None)
+    by_level = errors_by_level(pyramid, merged) if len(merged) else repeat(None)
     rows = []
-    for level, (figures, mesh) in enumerate(zip(pyramid.measured, meshes, strict=False)):
+    for level, (figures, errors) in enumerate(zip(pyramid.measured, by_level, strict=False)):
         squared, largest, n_uncovered = figures.squared_errors, figures.largest_error, 0
         n_points = figures.n_points + len(merged)
-        if mesh is not None:
-            errors = surface_errors(mesh, merged)
+        if errors is not None:
             covered = errors[np.isfinite(errors)]
             squared += float((covered**2).sum())
             largest = max(largest, float(np.abs(covered).max(initial=0.0)))

@@ -230,6 +230,7 @@ class _Analysis:
         self._points = points
         self._integrals = np.ones(mesh.n_vertices) if integrals is None else integrals
         self._figures: tuple[LevelFigures, ...] | None = None
+        self._coarse_faces: NDArray[np.int32] | None = None
         self._scale = Normalisation(mesh, options.attribute_weights)
         self._share_of_step = self._reported = 0.0
         self._recorder: Recorder | None = None
@@ -255,6 +256,7 @@ class _Analysis:
             locked=frozen(self._all_locked) if self._all_locked.any() else None,
             parameters=self._options.as_dict(),
             measured=self._figures,
+            coarse_faces=self._coarse_faces,
             part=None
             if self._begun is None
             else PyramidPart(np.arange(self._mesh.n_vertices, dtype=np.int32), frozen(self._begun)),
@@ -320,6 +322,7 @@ class _Analysis:
         self._coefficients = result.coarse
         self._stopped_by = result.stopped_by
         self._figures = self._in_input_units(result.figures)
+        self._coarse_faces = frozen(result.faces)
         return [Step(*step) for step in result.steps]
 
     def _release_faces(self) -> NDArray[np.int32]:

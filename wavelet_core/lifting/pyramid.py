@@ -103,6 +103,8 @@ class Pyramid:
     kept_record : KeptRecord or None
         The record by which a file describes it to a reader who has its input, where the analysis
         was asked to keep one.
+    coarse_faces : ndarray of int32, shape (n_faces, 3), or None
+        Faces of level 0 where they are known without following the collapses.
 
     Examples
     --------
@@ -127,6 +129,7 @@ class Pyramid:
     part: PyramidPart | None = field(default=None, compare=False)
     measured: tuple[LevelFigures, ...] | None = field(default=None, compare=False)
     kept_record: KeptRecord | None = field(default=None, compare=False)
+    coarse_faces: NDArray[np.int32] | None = field(default=None, compare=False)
 
     @classmethod
     def from_parts(
@@ -175,7 +178,7 @@ class Pyramid:
 
     def __iter__(self) -> Iterator[TriangleMesh]:
         ids = self._ids_by_level(0)
-        faces = self._faces_by_level(0)
+        faces = list(self._faces_downwards())
         for level, coefficients in self._coefficients(ids):
             yield self._assemble(coefficients, ids[level], faces.pop())
 
@@ -250,6 +253,19 @@ class Pyramid:
     def synthesise(self, level: int | None = None) -> TriangleMesh:
         """Return the mesh of a level; by default of the finest, which equals the input."""
         return self.mesh(self.n_levels if level is None else level)
+
+    def finest_on(self, mesh: TriangleMesh) -> TriangleMesh:
+        """Return the finest mesh, with the faces of the input, which are not copied.
+
+        Parameters
+        ----------
+        mesh : TriangleMesh
+            The input.
+        """
+        ids = {} if self.locked is None else self._ids_by_level(0)
+        for _, coefficients in self._coefficients(ids):  # noqa: B007
+            pass
+        return self._assemble(coefficients, slice(None), mesh.faces)
 
     def detail(self, level: int) -> Detail:
         """Return the detail layer of the step from ``level + 1`` to ``level``."""
@@ -462,19 +478,22 @@ class Pyramid:
             ids[level] = current
         return ids
 
-    def _faces_by_level(self, lowest: int) -> list[NDArray[np.int32]]:
-        """Faces of each level, finest first, down to ``lowest``."""
+    def _faces_downwards(self, lowest: int = 0) -> Iterator[NDArray[np.int32]]:
+        """Yield the faces of each level, finest first, down to ``lowest``."""
         faces, n_vertices = self.faces, self.n_vertices(self.n_levels)
-        by_level = [faces]
+        yield faces
         for level in range(self.n_levels - 1, lowest - 1, -1):
             step = self.steps[level]
             faces = merged_faces(faces, merge_map(step.odd, step.target, n_vertices))
             n_vertices -= step.n_odd
-            by_level.append(faces)
-        return by_level
+            yield faces
 
     def _faces_of(self, level: int) -> NDArray[np.int32]:
         """Faces of one level, without those between."""
+        if level == self.n_levels:
+            return self.faces
+        if level == 0 and self.coarse_faces is not None:
+            return self.coarse_faces
         n_vertices = self.n_vertices(level)
         position = np.arange(n_vertices, dtype=np.int32)
         for step in self.steps[level:]:
@@ -495,12 +514,12 @@ class Pyramid:
         return by_level
 
     def _coefficients(self, ids: dict[int, NDArray[np.int32]]) -> Iterator[tuple[int, FloatArray]]:
-        """Scaling coefficients from level 0 up."""
+        """Scaling coefficients from level 0 up; ids are looked at where vertices are locked."""
         coefficients = self.coarse
         yield 0, coefficients
         integrals = self._integrals_by_level(0) if UPDATES[self.update].uses_integrals else {}
         for level, step in enumerate(self.steps):
-            n_fine = len(ids[level + 1])
+            n_fine = len(coefficients) + step.n_odd
             even = even_positions(step.odd, n_fine)
             coefficients = synthesise_level(
                 coefficients,
@@ -509,19 +528,18 @@ class Pyramid:
                 even,
                 step.prediction(len(even)),
                 self.update,
-                integrals.pop(level + 1) if integrals else np.ones(n_fine),
-                self._locked(ids[level + 1]),
+                integrals[level + 1] if integrals else np.ones(n_fine),
+                np.zeros(n_fine, bool) if self.locked is None else self.locked[ids[level + 1]],
+                integrals.pop(level, None),
             )
             yield level + 1, coefficients
 
     def _assemble(
-        self, coefficients: FloatArray, ids: NDArray[np.int32], faces: NDArray[np.int32]
+        self, coefficients: FloatArray, ids: NDArray[np.int32] | slice, faces: NDArray[np.integer]
     ) -> TriangleMesh:
         if self.horizontal is None:
-            vertices, attributes = coefficients[:, :3], coefficients[:, 3:]
+            vertices, attributes = coefficients[:, :3].copy(), coefficients[:, 3:].copy()
         else:
             vertices = np.column_stack([self.horizontal[ids], coefficients[:, 0]])
-            attributes = coefficients[:, 1:]
-        return TriangleMesh._trusted(
-            vertices.copy(), faces, attributes.copy(), self.attribute_names
-        )
+            attributes = coefficients[:, 1:].copy()
+        return TriangleMesh._trusted(vertices, faces, attributes, self.attribute_names)

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._threads import centre_of
 from .._validate import FloatArray, frozen
 from ..errors import PyramidError
 from ..mesh.triangle_mesh import TriangleMesh
@@ -38,6 +39,7 @@ __all__ = [
     "RecordPart",
     "Recorder",
     "is_error_guided",
+    "kept_record_of",
     "part_of",
     "pyramid_of",
     "record_of",
@@ -210,8 +212,8 @@ def frame_of(mesh: TriangleMesh, attribute_weights: Sequence[float]) -> Frame:
     weights = Normalisation(mesh, attribute_weights).height_weights()
     heights = _columns(mesh) * weights
     return Frame(
-        plan.min(axis=0) + np.ptp(plan, axis=0) / 2,
-        heights.min(axis=0) + np.ptp(heights, axis=0) / 2,
+        centre_of(plan)[0],
+        centre_of(heights)[0],
         weights,
         HEIGHT_STEP * float(np.abs(heights).max()),
     )
@@ -231,15 +233,11 @@ def record_of(
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
     """
-    if not is_error_guided(pyramid) or pyramid.n_levels == 0 or pyramid.part is not None:
+    kept = kept_record_of(pyramid, mesh)
+    if kept is not None:
+        return kept
+    if not _may_be_recorded(pyramid, mesh) or not np.array_equal(pyramid.faces, mesh.faces):
         return None
-    horizontal = pyramid.horizontal
-    if horizontal is None or not np.array_equal(horizontal, mesh.vertices[:, :2]):
-        return None
-    if not np.array_equal(pyramid.faces, mesh.faces):
-        return None
-    if pyramid.kept_record is not None and pyramid.kept_record.fits(pyramid, mesh):
-        return pyramid.kept_record.record
     frame = frame_of(mesh, pyramid.parameters["attribute_weights"])
     manner = _manner(pyramid, frame)
     columns = _columns(mesh)
@@ -268,6 +266,28 @@ def record_of(
         report(progress, 1 - last / pyramid.n_levels, _CANCELLED)
     coarse = _coarse(level, frame, columns[ids[level.ids]], locked[ids[level.ids]], manner)
     return Record(frame, tuple(parts)) if np.array_equal(coarse, pyramid.coarse) else None
+
+
+def kept_record_of(pyramid: Pyramid, mesh: TriangleMesh) -> Record | None:
+    """Return the record that the analysis has kept of a pyramid; None where it has kept none.
+
+    Parameters
+    ----------
+    pyramid : Pyramid
+    mesh : TriangleMesh
+        Its input, to the bit; its faces are not looked at.
+    """
+    kept = pyramid.kept_record
+    if kept is None or not _may_be_recorded(pyramid, mesh) or not kept.fits(pyramid, mesh):
+        return None
+    return kept.record
+
+
+def _may_be_recorded(pyramid: Pyramid, mesh: TriangleMesh) -> bool:
+    if not is_error_guided(pyramid) or pyramid.n_levels == 0 or pyramid.part is not None:
+        return False
+    horizontal = pyramid.horizontal
+    return horizontal is not None and np.array_equal(horizontal, mesh.vertices[:, :2])
 
 
 def pyramid_of(
@@ -318,6 +338,7 @@ def pyramid_of(
         faces=frozen(mesh.faces.astype(np.int32)),
         horizontal=frozen(mesh.vertices[:, :2]),
         coarse=frozen(_coarse(level, frame, columns[ids], is_locked[ids], manner)),
+        coarse_faces=frozen(level.faces),
         steps=tuple(_step(step, frame) for step in reversed(steps)),
         channels=tuple(channels),
         signal="z",
@@ -389,6 +410,7 @@ def part_of(
         faces=frozen(part.faces),
         horizontal=frozen(plan),
         coarse=frozen(_coarse(level, frame, unchanged[ids], is_locked[ids], manner)),
+        coarse_faces=frozen(level.faces),
         steps=tuple(_step(step, frame) for step in reversed(steps)),
         channels=tuple(channels),
         signal="z",

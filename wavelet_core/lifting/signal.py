@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .._table import Table
+from .._threads import centre_of
 from .._validate import FloatArray
 from ..mesh.triangle_mesh import TriangleMesh
 
@@ -68,10 +69,8 @@ class Normalisation:
     """Centre and range of the input's columns, by which cost and prediction measure."""
 
     def __init__(self, mesh: TriangleMesh, attribute_weights: Sequence[float]) -> None:
-        columns = [*mesh.vertices.T, *mesh.attributes.T]
-        low = np.array([column.min() for column in columns])
-        extent = np.array([np.ptp(column) for column in columns])
-        self._centre = low + extent / 2
+        middles, extents = zip(centre_of(mesh.vertices), centre_of(mesh.attributes), strict=True)
+        self._centre, extent = np.concatenate(middles), np.concatenate(extents)
         weights = np.array((1.0, 1.0, 1.0, *attribute_weights))
         self._factor = weights / np.where(extent > 0, extent, 1.0)
         self._height_weights = height_weights(extent[2:], attribute_weights)

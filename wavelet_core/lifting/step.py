@@ -9,8 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from .._kernels._jit import run_in_ranges
+from .._kernels.update import predict_rows
 from .._validate import FloatArray, are_equal, counted, owned
-from .update import UPDATES, apply_ring_means, coarse_integrals, update_filter
+from .update import UPDATES, Support, apply_ring_means, update_changes
+from .update import coarse_integrals as integrals_of_coarser
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -83,12 +86,27 @@ class FilterPair(NamedTuple):
     even: NDArray[np.int32]
 
 
+def predicted(prediction: csr_array, coarse: FloatArray) -> FloatArray:
+    """Return P @ coarse: what the odd vertices are predicted, ``(n_odd, n_channels)``."""
+    rows = np.empty((prediction.shape[0], coarse.shape[1]))
+    run_in_ranges(
+        predict_rows,
+        len(rows),
+        prediction.indptr.astype(np.int64),
+        prediction.indices,
+        prediction.data,
+        np.ascontiguousarray(coarse),
+        rows,
+    )
+    return rows
+
+
 def split_integrals(
     integrals: FloatArray, odd: NDArray[np.int32], even: NDArray[np.int32], prediction: csr_array
 ) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of the odd vertices (finer level) and of the coarser level (Eq. 47)."""
     odd_integrals = integrals[odd]
-    return odd_integrals, coarse_integrals(prediction, odd_integrals, integrals[even])
+    return odd_integrals, integrals_of_coarser(prediction, odd_integrals, integrals[even])
 
 
 def analyse_level(
@@ -116,14 +134,13 @@ def analyse_level(
     """
     odd_integrals, coarser = split_integrals(integrals, odd, even, prediction)
     coarse = fine[even]
-    details = fine[odd] - prediction @ coarse  # Eq. 30
+    details = fine[odd] - predicted(prediction, coarse)  # Eq. 30
     update = UPDATES.find(method)
     if update.is_sequential:
         coarse = apply_ring_means(coarse, details, prediction, locked[even])
     elif not update.is_empty:
-        coarse = coarse + (
-            update_filter(method, prediction, odd_integrals, coarser, locked[even]) @ details
-        )  # Eq. 31
+        support = Support(prediction, odd_integrals, coarser, locked[even])
+        coarse = coarse + update_changes(method, support, details)  # Eq. 31
     return coarse, details, coarser
 
 
@@ -136,17 +153,21 @@ def synthesise_level(
     method: str,
     integrals: FloatArray,
     locked: NDArray[np.bool_],
+    coarse_integrals: FloatArray | None = None,
 ) -> FloatArray:
-    """Return the scaling coefficients of the finer level: the mirror of :func:`analyse_level`."""
+    """Return the scaling coefficients of the finer level: the mirror of :func:`analyse_level`.
+
+    ``coarse_integrals`` are those of the coarser level, where they are known.
+    """
     update = UPDATES.find(method)
     if update.is_sequential:
         coarse = apply_ring_means(coarse, details, prediction, locked[even], undo=True)
     elif not update.is_empty:
-        odd_integrals, coarser = split_integrals(integrals, odd, even, prediction)
-        coarse = coarse - (
-            update_filter(method, prediction, odd_integrals, coarser, locked[even]) @ details
-        )  # Eq. 32
+        if coarse_integrals is None:
+            coarse_integrals = split_integrals(integrals, odd, even, prediction)[1]
+        support = Support(prediction, integrals[odd], coarse_integrals, locked[even])
+        coarse = coarse - update_changes(method, support, details)  # Eq. 32
     fine = np.empty((len(odd) + len(even), coarse.shape[1]))
     fine[even] = coarse
-    fine[odd] = details + prediction @ coarse  # Eq. 33
+    fine[odd] = details + predicted(prediction, coarse)  # Eq. 33
     return fine

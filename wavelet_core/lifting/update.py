@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, diags  # diags_array is not in SciPy 1.10
 
-from .._kernels.update import add_ring_means, minimum_norm_columns, subtract_ring_means
+from .._kernels.update import (
+    add_ring_means,
+    minimum_norm_changes,
+    minimum_norm_columns,
+    spread_integrals,
+    subtract_ring_means,
+)
 from .._table import Table
 from .._validate import FloatArray
 
@@ -19,9 +25,15 @@ def coarse_integrals(
 ) -> FloatArray:
     """Return the integrals of the coarse scaling functions (Eqs. 23 and 47)."""
     # one entry after the other, as `update_heights` adds them: the bits are the same
-    added = prediction.data * np.repeat(odd_integrals, np.diff(prediction.indptr))
-    places = np.concatenate([np.arange(len(even_integrals)), prediction.indices])
-    return np.bincount(places, np.concatenate([even_integrals, added])).astype(np.float64)
+    integrals = np.array(even_integrals, dtype=np.float64)
+    spread_integrals(
+        prediction.indptr.astype(np.int64),
+        prediction.indices,
+        prediction.data,
+        odd_integrals,
+        integrals,
+    )
+    return integrals
 
 
 class Support(NamedTuple):
@@ -72,6 +84,22 @@ def update_filter(
     return UPDATES.find(method).filter(Support(prediction, odd_integrals, integrals, locked))
 
 
+def update_changes(method: str, support: Support, details: FloatArray) -> FloatArray:
+    """Return U @ details, ``(n_even, n_channels)``: what an update adds to the even coefficients.
+
+    Parameters
+    ----------
+    method : str
+        A name out of :data:`UPDATES`, of an update that is no sequence.
+    support : Support
+    details : ndarray, shape (n_odd, n_channels)
+    """
+    update = UPDATES.find(method)
+    if update.changes is not None:
+        return update.changes(support, details)
+    return update.filter(support) @ details
+
+
 # -- the filters ---------------------------------------------------------------------------------
 
 
@@ -119,6 +147,22 @@ def minimum_norm(support: Support) -> csr_array:
         values,
     )
     return _columns(prediction, values)
+
+
+def minimum_norm_applied(support: Support, details: FloatArray) -> FloatArray:
+    """Return U @ details of :func:`minimum_norm`, without its U."""
+    prediction = support.prediction
+    changes = np.zeros((len(support.integrals), details.shape[1]))
+    minimum_norm_changes(
+        prediction.indptr.astype(np.int64),
+        prediction.indices,
+        support.odd_integrals,
+        support.integrals,
+        support.locked,
+        np.ascontiguousarray(details),
+        changes,
+    )
+    return changes
 
 
 def _columns(prediction: csr_array, values: FloatArray) -> csr_array:
@@ -182,6 +226,7 @@ class Update(NamedTuple):
     uses_integrals : bool, whether the integrals of the scaling functions enter
     divides_by_sums : bool, whether it divides by sums of prediction weights, which must then be of
         one sign
+    changes : callable, from a Support and details to U @ details, where that is quicker without U
     """
 
     name: str
@@ -193,6 +238,7 @@ class Update(NamedTuple):
     is_sequential: bool = False
     uses_integrals: bool = False
     divides_by_sums: bool = False
+    changes: Callable[[Support, FloatArray], FloatArray] | None = None
 
 
 #: The update filters. A new one is a function above and a row here, and no more.
@@ -202,7 +248,7 @@ UPDATES = Table(
         Update(
             "minimum_norm", "MN", minimum_norm,
             "keeps the weighted mean height at every level", "Eq. 50",
-            uses_integrals=True,
+            uses_integrals=True, changes=minimum_norm_applied,
         ),
         Update(
             "martinez_ortega", "MO", martinez_ortega,

@@ -21,6 +21,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .._threads import run_in_blocks
+
 
 def even_positions(odd: NDArray[np.int32], n_vertices: int) -> NDArray[np.int32]:
     """Return the ids of the vertices that stay, ascending: the complement of ``odd``."""
@@ -42,6 +44,10 @@ def merge_map(
 
 def merged_faces(faces: NDArray[np.integer], position: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return the faces after the collapses; those that lost their area have dropped out."""
-    moved = position[faces]
-    a, b, c = moved.T
-    return moved[(a != b) & (b != c) & (c != a)]
+
+    def merge(start: int, stop: int) -> NDArray[np.int32]:
+        moved = position[faces[start:stop]]
+        a, b, c = moved.T
+        return moved[(a != b) & (b != c) & (c != a)]
+
+    return np.concatenate([np.empty((0, 3), np.int32), *run_in_blocks(merge, len(faces))])

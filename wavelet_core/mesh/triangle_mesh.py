@@ -8,6 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .._kernels._jit import run_in_ranges
+from .._kernels.grid import count_grid_faces, fill_grid_faces
+from .._threads import run_in_blocks
 from .._validate import (
     FloatArray,
     IntArray,
@@ -95,7 +98,7 @@ class TriangleMesh:
     ) -> TriangleMesh:
         """Build from arrays that this package made itself, without the checks."""
         mesh = cls.__new__(cls)
-        mesh._fill(vertices, faces.astype(np.int64), attributes, names)
+        mesh._fill(vertices, faces.astype(np.int64, copy=False), attributes, names)
         return mesh
 
     @classmethod
@@ -149,10 +152,12 @@ class TriangleMesh:
             )
         if not mask.any():
             raise MeshError("no cell of the grid is valid; there is nothing to triangulate.")
-        rows, columns = np.nonzero(mask)
-        vertices = np.column_stack([x_array[columns], y_array[rows], elevation_array[mask]])
+        vertices = np.empty((np.count_nonzero(mask), 3))
+        vertices[:, 0] = np.broadcast_to(x_array, mask.shape)[mask]
+        vertices[:, 1] = np.broadcast_to(y_array[:, None], mask.shape)[mask]
+        vertices[:, 2] = elevation_array[mask]
         clockwise = _is_descending(x_array) != _is_descending(y_array)
-        faces = _grid_faces(mask, clockwise)
+        faces = grid_faces(mask, clockwise)
         if attributes is not None:
             attributes = np.asarray(attributes, dtype=np.float64)
             if attributes.shape[:2] != mask.shape:
@@ -253,10 +258,12 @@ def _listed(names: Sequence[str]) -> list[str]:
 def _doubled_plan_areas(vertices: FloatArray, faces: IntArray) -> FloatArray:
     x, y = np.ascontiguousarray(vertices[:, 0]), np.ascontiguousarray(vertices[:, 1])
     areas = np.empty(len(faces))
-    for start in range(0, len(faces), FACES_AT_ONCE):  # so that the temporaries stay in the cache
-        block = slice(start, start + FACES_AT_ONCE)
-        a, b, c = faces[block].T
-        areas[block] = (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
+
+    def measure(start: int, stop: int) -> None:
+        a, b, c = faces[start:stop].T
+        areas[start:stop] = (x[b] - x[a]) * (y[c] - y[a]) - (y[b] - y[a]) * (x[c] - x[a])
+
+    run_in_blocks(measure, len(faces), FACES_AT_ONCE)
     return areas
 
 
@@ -274,8 +281,8 @@ def _is_descending(values: FloatArray) -> bool:
     return len(values) > 1 and bool(values[1] < values[0])
 
 
-def _grid_faces(valid: NDArray[np.bool_], clockwise: bool) -> IntArray:
-    """Faces of the valid cells, in row-major order of the squares.
+def grid_faces(valid: NDArray[np.bool_], clockwise: bool) -> IntArray:
+    """Return the faces of the valid cells, in row-major order of the squares.
 
     With x to the right and y up::
 
@@ -284,15 +291,12 @@ def _grid_faces(valid: NDArray[np.bool_], clockwise: bool) -> IntArray:
         | /   |        without b: (a, e, d); without d: (a, b, e)
         a --- b
     """
-    ids = np.full(valid.shape, -1, dtype=np.int64)
-    ids[valid] = np.arange(np.count_nonzero(valid))
-    a, b = ids[:-1, :-1].ravel(), ids[:-1, 1:].ravel()
-    d, e = ids[1:, :-1].ravel(), ids[1:, 1:].ravel()
-    has_diagonal = (a >= 0) & (e >= 0)
-    first = np.column_stack([a, b, e])
-    first[a < 0] = np.column_stack([b, e, d])[a < 0]
-    first[e < 0] = np.column_stack([a, b, d])[e < 0]
-    second = np.column_stack([a, e, d])
-    keep = np.stack([(first >= 0).all(axis=1), has_diagonal & (d >= 0)], axis=1)
-    faces = np.stack([first, second], axis=1)[keep]
-    return faces[:, ::-1] if clockwise else faces
+    ids = np.cumsum(valid, dtype=np.int32).reshape(valid.shape) - np.int32(1)
+    ids[~valid] = -1
+    n_rows = max(valid.shape[0] - 1, 0)
+    first = np.zeros(n_rows + 1, dtype=np.int64)
+    run_in_ranges(count_grid_faces, n_rows, ids, first[1:])
+    np.cumsum(first, out=first)
+    faces = np.empty((first[-1], 3), dtype=np.int64)
+    run_in_ranges(fill_grid_faces, n_rows, ids, first, clockwise, faces)
+    return faces

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .._threads import rows_at, run_in_blocks
 from .._validate import FloatArray, IntArray, distinct
 from ..errors import MeshError, MissingDependencyError, OptionError
 from .constraints import with_edges
@@ -53,10 +54,16 @@ def merge_duplicates(points: FloatArray, rule: str = "lowest") -> Merged:
             choices=", ".join(_SIGN_OF_RULE),
         )
     n_points = len(points)
-    order = np.lexsort((_SIGN_OF_RULE[rule] * points[:, 2], points[:, 1], points[:, 0]))
-    x, y = points[order, 0], points[order, 1]
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    x, y = rows_at(points[:, 0], order), rows_at(points[:, 1], order)
     is_first = np.ones(n_points, dtype=bool)
     is_first[1:] = (x[1:] != x[:-1]) | (y[1:] != y[:-1])
+    is_shared = ~is_first
+    is_shared[:-1] |= ~is_first[1:]
+    shared = np.flatnonzero(is_shared)  # few of many, as a rule, so that z is looked at for few
+    at = order[shared]
+    by_z = np.lexsort((_SIGN_OF_RULE[rule] * points[at, 2], points[at, 1], points[at, 0]))
+    order[shared] = at[by_z]
     group_of_sorted = np.cumsum(is_first) - 1
     chosen = order[is_first]
     kept = np.sort(chosen)
@@ -208,17 +215,26 @@ def _without_hull_slivers(plan: FloatArray, faces: IntArray) -> IntArray:
     face; inside, the Delaunay library's exact predicates leave none.
     """
     while True:
-        corners = plan[faces]
-        sides = np.roll(corners, -1, axis=1) - corners
-        doubled_area = sides[:, 0, 0] * -sides[:, 2, 1] + sides[:, 0, 1] * sides[:, 2, 0]
-        longest = (sides**2).sum(axis=2).max(axis=1)
-        sliver = np.flatnonzero(doubled_area <= SLIVER_TOLERANCE * longest)
+        sliver = _slivers(plan, faces)
         if len(sliver) == 0:
             return faces
         doomed = _peelable(faces, sliver, len(plan))
         if len(doomed) == 0:
             return faces
         faces = np.delete(faces, doomed, axis=0)
+
+
+def _slivers(plan: FloatArray, faces: IntArray) -> NDArray[np.int64]:
+    """Return the faces of no area."""
+
+    def find(start: int, stop: int) -> NDArray[np.int64]:
+        corners = plan[faces[start:stop]]
+        sides = np.roll(corners, -1, axis=1) - corners
+        doubled_area = sides[:, 0, 0] * -sides[:, 2, 1] + sides[:, 0, 1] * sides[:, 2, 0]
+        longest = (sides**2).sum(axis=2).max(axis=1)
+        return start + np.flatnonzero(doubled_area <= SLIVER_TOLERANCE * longest)
+
+    return np.concatenate([np.empty(0, np.int64), *run_in_blocks(find, len(faces))])
 
 
 def _peelable(faces: IntArray, sliver: IntArray, n_vertices: int) -> NDArray[np.int64]:
@@ -244,7 +260,18 @@ def canonical_faces(faces: NDArray[np.integer]) -> NDArray[np.int64]:
     >>> canonical_faces(np.array([[3, 1, 2], [2, 0, 1]])).tolist()
     [[0, 1, 2], [1, 2, 3]]
     """
-    rows = np.arange(len(faces))[:, None]
-    turn = np.argmin(faces, axis=1)[:, None]
-    turned = faces.astype(np.int64)[rows, (turn + np.arange(3)) % 3]
-    return turned[np.lexsort((turned[:, 2], turned[:, 1], turned[:, 0]))]
+    turned = np.empty((len(faces), 3), dtype=np.int64)
+
+    def turn(start: int, stop: int) -> None:
+        block = faces[start:stop]
+        places = (np.argmin(block, axis=1)[:, None] + np.arange(3)) % 3
+        turned[start:stop] = np.take_along_axis(block, places, axis=1)
+
+    run_in_blocks(turn, len(faces))
+    # a side that no two faces have in one direction decides alone
+    side = turned[:, 0] * (int(turned.max(initial=0)) + 1) + turned[:, 1]
+    order = np.argsort(side)
+    ascending = rows_at(side, order)
+    if (ascending[1:] == ascending[:-1]).any():
+        order = np.lexsort((turned[:, 2], turned[:, 1], turned[:, 0]))
+    return rows_at(turned, order)

@@ -59,12 +59,6 @@ class VertexState(NamedTuple):
             z_changed=np.zeros(n, dtype=bool),
         )
 
-    def packed(self, slots: NDArray[np.int64], position: NDArray[np.int32]) -> VertexState:
-        """Return the state of some slots, side by side; ``position`` says where slots went."""
-        packed = VertexState._make(array[slots] for array in self)
-        target = np.where(packed.target >= 0, position[packed.target], np.int32(-1))
-        return packed._replace(target=target)
-
     def copied(self) -> VertexState:
         """Return a copy that shares no array."""
         return VertexState._make(array.copy() for array in self)
@@ -98,10 +92,6 @@ class FaceState(NamedTuple):
             squared_z=np.zeros(n_measured if n_channels > 1 else 0),
             largest_z=np.zeros(n_measured),
         )
-
-    def packed(self, faces: NDArray[np.int64]) -> FaceState:
-        """Return the state of some faces, side by side."""
-        return FaceState._make(array[faces] if len(array) else array for array in self)
 
     def copied(self) -> FaceState:
         """Return a copy that shares no array."""

@@ -37,6 +37,7 @@ from .._kernels.surface_points import (
     sum_over_stars,
     update_heights,
 )
+from .._threads import centre_of, rows_at, run_in_blocks
 from .._validate import FloatArray, frozen
 from ..mesh.half_edges import half_edges_of
 from ..mesh.location import cover_of
@@ -130,10 +131,10 @@ class SurfaceLevel:
         with_update: bool,
         outline_tolerance: float = 0.0,
     ) -> None:
-        self._centre = centre = plan.min(axis=0) + np.ptp(plan, axis=0) / 2
+        self._centre = centre = centre_of(plan)[0]
         # about a local origin also vertically, so that sums of squares keep their digits
-        self._z_origin = heights.min(axis=0) + np.ptp(heights, axis=0) / 2
-        least_error = NEGLIGIBLE_ERROR * float(np.ptp(heights[:, 0]))
+        self._z_origin, extent = centre_of(heights)
+        least_error = NEGLIGIBLE_ERROR * float(extent[0])
         self._least_limit = least_error * least_error  # inf where ** would overflow
         self._cost_limit = 0.0
         self._set_up(plan - centre, heights - self._z_origin, faces, locked, with_update,
@@ -278,31 +279,52 @@ class SurfaceLevel:
 
     def figures(self) -> LevelFigures:
         """Return sizes and errors of the level as it is now."""
-        lives = self._vertices.lives
-        changes = self._surface.z[lives] - self._surface.measured[lives]
+        squared_changes, largest_change = self._changes()
         return LevelFigures(
             self.n_vertices,
             int(np.count_nonzero(self._faces.lives)),
             self.n_input,
-            self.squared_errors(),
-            self.largest_error(),
-            (changes**2).sum(axis=0),
+            self._squared_of_faces() + float(squared_changes[0]),
+            max(self._largest_of_faces(), largest_change),
+            squared_changes,
         )
 
     def squared_errors(self) -> float:
         """Return the sum of the squared height errors of all input vertices."""
-        faces = self._faces
-        of_faces = faces.squared_z if len(faces.squared_z) else faces.squared
-        return float(of_faces[faces.lives].sum() + (self._own_errors() ** 2).sum())
+        return self._squared_of_faces() + float(self._changes()[0][0])
 
     def largest_error(self) -> float:
         """Return the largest height error of all input vertices."""
-        of_faces = self._faces.largest_z[self._faces.lives].max(initial=0.0)
-        return max(float(np.sqrt(of_faces)), float(np.abs(self._own_errors()).max(initial=0.0)))
+        return max(self._largest_of_faces(), self._changes()[1])
 
-    def _own_errors(self) -> FloatArray:
-        difference = self._surface.z[:, 0] - self._surface.measured[:, 0]
-        return difference[self._vertices.lives]
+    def _squared_of_faces(self) -> float:
+        faces = self._faces
+        squared = faces.squared_z if len(faces.squared_z) else faces.squared
+
+        def summed(start: int, stop: int) -> float:
+            return float(squared[start:stop][faces.lives[start:stop]].sum())
+
+        return sum(run_in_blocks(summed, len(squared)), start=0.0)
+
+    def _largest_of_faces(self) -> float:
+        faces = self._faces
+
+        def largest(start: int, stop: int) -> float:
+            of_block = faces.largest_z[start:stop][faces.lives[start:stop]]
+            return float(of_block.max(initial=0.0))
+
+        return float(np.sqrt(max(run_in_blocks(largest, len(faces.largest_z)), default=0.0)))
+
+    def _changes(self) -> tuple[FloatArray, float]:
+        """Return how far the level's vertices are from the input: see LevelFigures; the largest."""
+        z, measured, lives = self._surface.z, self._surface.measured, self._vertices.lives
+
+        def of_block(start: int, stop: int) -> tuple[FloatArray, float]:
+            change = (z[start:stop] - measured[start:stop])[lives[start:stop]]
+            return (change**2).sum(axis=0), float(np.abs(change[:, 0]).max(initial=0.0))
+
+        squared, largest = zip(*run_in_blocks(of_block, len(lives)), strict=True)
+        return np.sum(squared, axis=0), max(largest)
 
     # -- which vertices go -----------------------------------------------------------------------
 
@@ -418,6 +440,11 @@ class SurfaceLevel:
 
     def remove(self, odd: NDArray[np.int32]) -> CollapseStep:
         """Collapse the odd vertices, predict, update; return the step, details as weighted."""
+        step = self._remove(odd)
+        self._pack()  # when the rings are no longer there
+        return step
+
+    def _remove(self, odd: NDArray[np.int32]) -> CollapseStep:
         odd, indptr, ring, ring_faces = self._collapse(odd)
         corners, weights, details = self._hand_over(odd, indptr, ring, ring_faces)
         vertices = self._vertices
@@ -433,7 +460,7 @@ class SurfaceLevel:
                 vertices.integrals, self._surface.z, vertices.z_changed,
             )  # fmt: skip
         self._bring_sums_up_to_date()
-        step = CollapseStep(
+        return CollapseStep(
             frozen(fine_position[odd]),
             frozen(fine_position[ring[indptr[:-1]]]),
             frozen(row_indptr),
@@ -441,8 +468,6 @@ class SurfaceLevel:
             frozen(row_weights),
             details,
         )
-        self._pack()
-        return step
 
     def _collapse(
         self, odd: NDArray[np.int32]
@@ -552,7 +577,9 @@ class SurfaceLevel:
         """Close the gaps once there are many."""
         if self.n_vertices > PACKED_SHARE * len(self._vertices.ids):
             return
-        vertices, faces = np.flatnonzero(self._vertices.lives), np.flatnonzero(self._faces.lives)
+        vertices, faces = (
+            np.flatnonzero(state.lives).astype(np.int32) for state in (self._vertices, self._faces)
+        )
         position = np.full(len(self._vertices.ids), -1, dtype=np.int32)
         position[vertices] = np.arange(len(vertices), dtype=np.int32)
         face_position = np.full(len(self._faces.lives), -1, dtype=np.int32)
@@ -566,22 +593,29 @@ class SurfaceLevel:
         run_in_ranges(pack_faces, len(faces), faces, position, face_position, self._mesh, packed)
         run_in_ranges(pack_vertices, len(vertices), vertices, face_position, self._mesh, packed)
         self._mesh = packed
-        self._surface = Surface(*(np.ascontiguousarray(a[vertices]) for a in self._surface))
-        self._points = self._points._replace(
-            start=self._points.start[faces], n_points=self._points.n_points[faces]
-        )
-        self._vertices = self._vertices.packed(vertices, position)
-        self._faces = self._faces.packed(faces)
+        # one array after the other, so that hardly any is there twice at a time
+        for state, names, places, n_rows in (
+            ("_surface", Surface._fields, vertices, 1),
+            ("_points", ("start", "n_points"), faces, 1),
+            ("_vertices", VertexState._fields, vertices, 1),
+            ("_faces", FaceState._fields, faces, 1),
+            ("_moments", ("vertex_slope", "vertex_weight"), vertices, 1),
+            ("_moments", ("slope", "weight"), faces, 3),
+        ):
+            for name in names:
+                self._pack_array(state, name, places, n_rows)
+        known = np.flatnonzero(self._vertices.target >= 0)
+        self._vertices.target[known] = position[self._vertices.target[known]]
         if len(self._outline.ids):
             self._outline = self._outline._replace(ids=self._vertices.ids)
-        if len(self._moments.weight):
-            n_channels = self._moments.slope.shape[1]
-            self._moments = Moments(
-                self._moments.slope.reshape(-1, 3, n_channels)[faces].reshape(-1, n_channels),
-                self._moments.weight.reshape(-1, 3)[faces].ravel(),
-                self._moments.vertex_slope[vertices],
-                self._moments.vertex_weight[vertices],
-            )
+
+    def _pack_array(self, of: str, name: str, places: NDArray[np.int32], n_rows: int) -> None:
+        """Keep those rows of an array that places have, ``n_rows`` side by side each."""
+        state = getattr(self, of)
+        array = getattr(state, name)
+        if len(array):
+            rows = rows_at(array.reshape(len(array) // n_rows, -1), places)
+            setattr(self, of, state._replace(**{name: rows.reshape(-1, *array.shape[1:])}))
 
     def snapshot(self) -> SurfaceLevel:
         """Return a copy to go back to; points already in place are never overwritten."""

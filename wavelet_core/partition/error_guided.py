@@ -116,11 +116,13 @@ class SurfaceRules(NamedTuple):
 class SurfaceAnalysis(NamedTuple):
     """Coarse coefficients ``(n_coarse, n_channels)``, and the steps, the finest first.
 
+    faces : (n_faces, 3) int32, of the coarsest level
     stopped_by : one of wavelet_core.partition.stopping.REASONS
     figures : of every level, the finest first, in weighted columns
     """
 
     coarse: FloatArray
+    faces: NDArray[np.int32]
     steps: list[CollapseStep]
     stopped_by: str
     figures: list[LevelFigures]
@@ -219,7 +221,7 @@ def analyse_surface(
     coarse = level.heights / weights
     unchanged = locked[ids] if rules.with_update else np.ones(len(ids), dtype=bool)
     coarse[unchanged] = columns[ids[unchanged]]  # to the bit
-    return SurfaceAnalysis(coarse, steps, stopped_by, figures)
+    return SurfaceAnalysis(coarse, level.faces, steps, stopped_by, figures)
 
 
 def _choose(level: SurfaceLevel, rules: SurfaceRules, cutoff: float) -> _Choice | None:

@@ -21,19 +21,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
-from .._kernels.forecast import forecast_collapses, match_targets
+from .._kernels.forecast import NO_FORECAST, forecast_collapses, match_targets
 from .._kernels.half_edges import HalfEdges
 from .._kernels.outline import Outline
 from .._kernels.surface_choice import OUT_OF_QUESTION, find_first, take_first
 from .._kernels.surface_points import Surface
-from .._validate import FloatArray, frozen
+from .._threads import run_in_blocks
+from .._validate import frozen
 from ..errors import PyramidError
 
 #: Classes of the questions whether a vertex goes, and onto which target.
 N_GOING_CLASSES = 32
 N_TARGET_CLASSES = 8
-#: The code of "no forecast"; those of forecasts are lower.
-NO_FORECAST = 0xFFFF
 #: Codes in a class: forecasts within a factor of two.
 CODES_IN_CLASS = 128
 #: The class of the forecasts in the middle of those that go, and the last one.
@@ -122,14 +121,13 @@ def ask(pen: Pen, sight: Sight, truth: Collapses | None = None) -> Collapses:
 
 def _forecasts(sight: Sight) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
     """Return the codes of the best and of the next best target of every slot."""
-    n = len(sight.key)
-    best, second = np.full(n, np.inf), np.full(n, np.inf)
+    best, second = (np.full(len(sight.key), NO_FORECAST, dtype=np.uint16) for _ in range(2))
+    negligible = (NEGLIGIBLE_STEPS * sight.height_step) ** 2
     run_in_ranges(
         forecast_collapses, len(sight.slots), sight.slots, sight.mesh, sight.surface, sight.stays,
-        sight.locked, sight.outline, sight.height_step, best, second,
+        sight.locked, sight.outline, sight.height_step, negligible, best, second,
     )  # fmt: skip
-    negligible = (NEGLIGIBLE_STEPS * sight.height_step) ** 2
-    return _coded(best, negligible), _coded(second, negligible)
+    return best, second
 
 
 def _ask_going(
@@ -141,9 +139,9 @@ def _ask_going(
     is_odd: NDArray[np.bool_] | None,
 ) -> NDArray[np.int32]:
     """Ask in rounds which of the vertices go; return those, ascending."""
-    place = (codes.astype(np.uint64) << np.uint64(32)) | sight.key
-    active = sight.slots[codes[sight.slots] <= highest]
-    place[codes > highest] = OUT_OF_QUESTION
+    place = _places(codes, sight.key, highest)
+    active = np.flatnonzero(codes <= highest).astype(np.int32)  # none at slots that are gone
+    class_of = _class_of_code(middle)
     rival = np.arange(len(place), dtype=np.int32)
     taken = []
     is_first = True
@@ -151,7 +149,7 @@ def _ask_going(
         wins = np.empty(len(active), dtype=bool)
         run_in_ranges(find_first, len(active), active, sight.mesh, place, wins, rival)
         asked = active[wins]
-        classes = _going_classes(codes[asked], middle, is_first)
+        classes = class_of[codes[asked]] + np.uint8(not is_first)
         goes = pen.going(classes, None if is_odd is None else is_odd[asked])
         place[asked[~goes]] = OUT_OF_QUESTION
         wins[wins] = goes
@@ -277,25 +275,30 @@ class Reader:
                 raise PyramidError("answers to no question; the file is damaged.")
 
 
-def _coded(squared: FloatArray, negligible: float) -> NDArray[np.uint16]:
-    """Return the upper half of each number in single precision, which keeps the order."""
-    with np.errstate(over="ignore"):
-        single = np.where(squared <= negligible, 0.0, squared).astype(np.float32)
-    code = (single.view(np.uint32) >> np.uint32(16)).astype(np.uint16)
-    code[~np.isfinite(single)] = NO_FORECAST
-    return code
+def _places(codes: NDArray[np.uint16], key: NDArray[np.uint32], highest: int) -> NDArray[np.uint64]:
+    """Return numbers in the order of the questions: by forecast, and by key where these agree."""
+    place = np.empty(len(codes), dtype=np.uint64)
+
+    def fill(start: int, stop: int) -> None:
+        of_block = codes[start:stop]
+        numbers = (of_block.astype(np.uint64) << np.uint64(32)) | key[start:stop]
+        place[start:stop] = np.where(of_block <= highest, numbers, OUT_OF_QUESTION)
+
+    run_in_blocks(fill, len(codes))
+    return place
 
 
-def _going_classes(codes: NDArray[np.uint16], middle: int, is_first: bool) -> NDArray[np.int64]:
-    octave = (codes.astype(np.int64) - middle) // CODES_IN_CLASS + MIDDLE_CLASS
+def _class_of_code(middle: int) -> NDArray[np.uint8]:
+    """Return the class of the questions of the first round, by code; later ones follow it."""
+    octave = (np.arange(NO_FORECAST + 1) - middle) // CODES_IN_CLASS + MIDDLE_CLASS
     octave = np.clip(octave, 0, LAST_CLASS)
-    octave[codes == 0] = LAST_CLASS + 1
-    return 2 * octave + (not is_first)
+    octave[0] = LAST_CLASS + 1
+    return (2 * octave).astype(np.uint8)
 
 
-def _target_classes(best: NDArray[np.uint16], second: NDArray[np.uint16]) -> NDArray[np.int64]:
+def _target_classes(best: NDArray[np.uint16], second: NDArray[np.uint16]) -> NDArray[np.uint8]:
     lead = (second.astype(np.int64) - best) // CODES_IN_DOUBT
-    classes = np.clip(lead, 0, N_TARGET_CLASSES - 3)
+    classes = np.clip(lead, 0, N_TARGET_CLASSES - 3).astype(np.uint8)
     classes[best == 0] = N_TARGET_CLASSES - 2
     classes[second == NO_FORECAST] = N_TARGET_CLASSES - 1
     return classes

@@ -20,7 +20,7 @@ from itertools import islice
 from multiprocessing import get_context, parent_process
 from typing import Any
 
-from wavelet_core._kernels._jit import THREADS_VARIABLE
+from wavelet_core._threads import THREADS_VARIABLE
 from wavelet_core.errors import MissingDependencyError
 from wavelet_gis.errors import OutputFileError
 

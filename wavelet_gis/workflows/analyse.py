@@ -200,7 +200,7 @@ def analyse(
         if options.get("outline_tolerance"):
             note_moved_outline(terrain.mesh, pyramid.mesh(0), options["outline_tolerance"])
     clock.stage("verify")
-    finest = pyramid.synthesise()
+    finest = pyramid.finest_on(terrain.mesh)
     geo = terrain.with_notes([*terrain.notes, *notes]).geo_pyramid(pyramid, finest)
     if measure:
         clock.stage("errors")

@@ -6,6 +6,7 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
+from wavelet_core._threads import centre_of
 from wavelet_gis.crs.frame import MAX_DISTORTION
 from wavelet_gis.errors import CrsWarning, InputFileError
 from wavelet_gis.io.formats import (
@@ -226,8 +227,7 @@ def _warn_of_scale(terrain: Terrain) -> None:
     """Warn where the plane is not true to scale, as Web Mercator far from the equator."""
     from wavelet_gis.crs.projection import scale_at
 
-    low, high = terrain.mesh.vertices.min(axis=0), terrain.mesh.vertices.max(axis=0)
-    x, y = (low[:2] + high[:2]) / 2
+    x, y = centre_of(terrain.mesh.vertices)[0][:2]
     scale = scale_at(terrain.system, float(x), float(y))
     if abs(scale - 1.0) > LARGEST_SCALE_ERROR:
         how = f"{scale:.3g} times too long" if scale > 1 else f"{1 / scale:.3g} times too short"

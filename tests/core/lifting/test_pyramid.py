@@ -31,7 +31,7 @@ def parts_of(pyramid):
     return {
         field.name: getattr(pyramid, field.name)
         for field in fields
-        if field.name not in ("part", "measured", "kept_record")
+        if field.name not in ("part", "measured", "kept_record", "coarse_faces")
     }
 
 
@@ -60,6 +60,24 @@ def test_channels_and_names(pyramid):
     assert pyramid.channels == (*leading, "class", "intensity")
     assert pyramid.attribute_names == ("class", "intensity")
     assert pyramid.mesh(0).attribute_names == ("class", "intensity")
+
+
+def test_the_finest_mesh_shares_the_faces_of_its_input():
+    mesh = random_delaunay(200, n_attributes=1, seed=3)
+    pyramid = analyse(mesh)
+    finest = pyramid.finest_on(mesh)
+    assert finest == pyramid.synthesise() != pyramid.mesh(0)
+    assert finest.faces is mesh.faces
+
+
+@pytest.mark.parametrize("update", ["none", "minimum_norm"])
+def test_faces_that_the_analysis_kept_are_those_that_the_collapses_leave(update):
+    for mesh in (random_delaunay(300, seed=4), grid_with_holes(20, 23, seed=2, hole_share=0.1)):
+        pyramid = analyse(mesh, update=update, target_vertices=40)
+        followed = dataclasses.replace(pyramid, coarse_faces=None)
+        assert pyramid.coarse_faces is not None
+        assert pyramid.mesh(0) == followed.mesh(0)
+        assert pyramid.denoised(0.1).mesh(0).n_faces == followed.n_faces(0)
 
 
 def test_meshes_and_details_in_one_pass_are_those_asked_for_one_by_one(pyramid):

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from helpers import assert_faces_have_area, euler_number
-from helpers_meshes import grid_with_holes
+from helpers_meshes import grid_with_holes, random_delaunay
 
 from wavelet_core import MeshError, TriangleMesh, analyse, synthetic
-from wavelet_core.mesh.triangulation import merge_duplicates
+from wavelet_core._kernels._jit import engine
+from wavelet_core.mesh.triangle_mesh import grid_faces
+from wavelet_core.mesh.triangulation import canonical_faces, merge_duplicates
 
 SQUARE = np.array([[0.0, 0, 1], [1, 0, 2], [1, 1, 3], [0, 1, 4]])
 FACES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -181,6 +183,22 @@ def test_a_grid_with_many_holes_has_sound_faces():
 # --- from_points ------------------------------------------------------------------------------
 
 
+def test_the_engines_give_a_grid_the_same_faces():
+    rng = np.random.default_rng(4)
+    for shape in ((1, 1), (1, 5), (7, 1), (9, 13)):
+        valid = rng.random(shape) < 0.7
+        for clockwise in (False, True):
+            by_engine = []
+            for name in ("loops", "arrays"):
+                with engine(name):
+                    by_engine.append(grid_faces(valid, clockwise))
+            np.testing.assert_array_equal(*by_engine)
+    counts = [
+        len(grid_faces(np.array(v, bool).reshape(2, 2), False)) for v in np.ndindex(2, 2, 2, 2)
+    ]
+    assert counts == [max(sum(v) - 2, 0) for v in np.ndindex(2, 2, 2, 2)]
+
+
 def test_points_in_any_order_are_all_used():
     rng = np.random.default_rng(0)
     points = rng.random((500, 3)) + np.array([5e5, 6e6, 100])
@@ -288,3 +306,24 @@ def test_the_arrays_of_the_caller_stay_his_own():
     assert elevation.flags.writeable
     assert x.flags.writeable
     assert not np.shares_memory(elevation, grid.vertices)
+
+
+def test_faces_in_their_one_order_and_merged_points_are_those_of_a_full_sort():
+    rng = np.random.default_rng(3)
+    for faces in (
+        random_delaunay(500, seed=5).faces,
+        rng.permuted(np.array([[0, 1, 2], [0, 1, 3], [0, 1, 4], [5, 0, 1]]), axis=0),
+        np.empty((0, 3), dtype=np.int64),
+    ):
+        shuffled = np.array([np.roll(face, k % 3) for k, face in enumerate(faces)]).reshape(-1, 3)
+        turned = [tuple(np.roll(face, -int(np.argmin(face)))) for face in shuffled]
+        expected = np.array(sorted(turned), dtype=np.int64).reshape(-1, 3)
+        np.testing.assert_array_equal(canonical_faces(shuffled.astype(np.int32)), expected)
+    points = rng.integers(0, 6, (200, 3)).astype(float)
+    for rule, sign in (("lowest", 1.0), ("highest", -1.0), ("first", 0.0)):
+        best = {}
+        for row, (x, y, z) in enumerate(points):
+            best[x, y] = min(best.get((x, y), (np.inf, 0)), (sign * z, row))
+        kept, representative = merge_duplicates(points, rule)
+        assert kept.tolist() == sorted(row for _, row in best.values())
+        assert [best[x, y][1] for x, y, _ in points] == kept[representative].tolist()

@@ -15,7 +15,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wavelet_core import Cancelled, MeshError, OptionError, TriangleMesh, analyse, refine, synthetic
-from wavelet_core._kernels._jit import HAS_NUMBA, THREADS_VARIABLE, engine
+from wavelet_core._kernels._jit import HAS_NUMBA, engine
+from wavelet_core._threads import THREADS_VARIABLE
 from wavelet_core.metrics import surface_errors
 from wavelet_core.refinement._tin_state import TinState
 from wavelet_core.refinement.finish import finished_within

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import wavelet_core
 from wavelet_core import Progress, Pyramid, PyramidError
-from wavelet_core.lifting.recorded import record_of
+from wavelet_core.lifting.recorded import Record, kept_record_of, record_of
 from wavelet_core.metrics import LevelErrors
 from wavelet_core.progress import part_of
 from wavelet_gis._fields import Fields
@@ -75,9 +75,7 @@ def pyramid_to_parts(
     source, arrays = geo.origin.to_parts()
     of_lists: dict[str, Any] = {}
     shrink_source(geo, source, arrays, part_of(progress, 0.0, _SHARE_OF_SOURCE))
-    mesh = geo.origin.kept_mesh(geo.frame, pyramid.faces)
-    of_record = part_of(progress, _SHARE_OF_SOURCE, _SHARE_OF_RECORD)
-    record = None if mesh is None else record_of(pyramid, mesh, of_record)
+    record = _record_of(geo, part_of(progress, _SHARE_OF_SOURCE, _SHARE_OF_RECORD))
     if record is None:
         recorded = None
         of_places = part_of(progress, _SHARE_OF_SOURCE, 1.0)
@@ -129,6 +127,17 @@ def pyramid_to_parts(
     if geo.notes:
         metadata["notes"] = [note.to_dict() for note in geo.notes]
     return metadata, arrays
+
+
+def _record_of(geo: GeoPyramid, progress: Progress | None) -> Record | None:
+    """Return the record of a pyramid, that of its analysis where it is kept."""
+    if geo.pyramid.kept_record is not None:
+        points = geo.origin.kept_mesh(geo.frame, np.empty((0, 3), dtype=np.int32))
+        kept = None if points is None else kept_record_of(geo.pyramid, points)
+        if kept is not None:
+            return kept
+    mesh = geo.origin.kept_mesh(geo.frame, geo.pyramid.faces)
+    return None if mesh is None else record_of(geo.pyramid, mesh, progress)
 
 
 def pyramid_from_parts(

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import Progress
+from wavelet_core._kernels.forecast import NO_FORECAST
 from wavelet_core.errors import PyramidError
 from wavelet_core.lifting.recorded import Frame, Record, RecordPart
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.partition.questions import (
     N_GOING_CLASSES,
     N_TARGET_CLASSES,
-    NO_FORECAST,
     Answers,
 )
 from wavelet_gis._fields import Fields

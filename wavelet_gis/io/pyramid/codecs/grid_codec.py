@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import Progress
+from wavelet_core._threads import run_in_blocks
 from wavelet_core._validate import distinct
 from wavelet_core.errors import PyramidError
 from wavelet_core.progress import report
@@ -62,6 +63,9 @@ ESCAPE = 255
 
 #: With more of those than this share, numbers are stored whole.
 MOST_BEYOND = 0.02
+
+#: Cells that are predicted together: their neighbours stay in the cache.
+_CELLS_AT_ONCE = 1 << 15
 
 #: Larger rasters are written pass by pass, without trying the other order.
 MOST_TRIED = 3_000_000
@@ -107,7 +111,13 @@ def integers_of(values: NDArray[Any]) -> Numbers:
     different = distinct(bits)
     if len(different) > MOST_IN_PALETTE * len(bits):
         return Numbers(bits, 0)
-    return Numbers(np.searchsorted(different, bits), 0, values_of(different, dtype, 0))
+    places = np.empty(len(bits), dtype=np.int64)
+
+    def find(start: int, stop: int) -> None:
+        places[start:stop] = np.searchsorted(different, bits[start:stop])
+
+    run_in_blocks(find, len(bits))
+    return Numbers(places, 0, values_of(different, dtype, 0))
 
 
 def values_of(
@@ -302,15 +312,33 @@ def _walk(
     n_known = 0
     known = np.zeros(valid.shape, dtype=bool)
     for cells in _passes(valid.shape):
-        window = np.ix_(cells.rows, cells.columns)
+        n_rows, n_columns = len(cells.rows), len(cells.columns)
+        columns = _stepped(cells.columns)
+
+        def look(start: int, stop: int) -> tuple[NDArray[Any], ...]:
+            part = cells._replace(rows=cells.rows[start:stop])  # noqa: B023 (called at once)
+            window = _stepped(part.rows), columns  # noqa: B023
+            here = valid[window]
+            predicted, relief = _predict(grid, known, part)
+            return predicted[here], relief[here], grid[window][here]
+
+        at_once = max(_CELLS_AT_ONCE // n_columns, 1)
+        seen = [
+            np.concatenate(parts)
+            for parts in zip(*run_in_blocks(look, n_rows, at_once), strict=True)
+        ]
+        window = _stepped(cells.rows), columns
         here = valid[window]
-        predicted, relief = _predict(grid, known, cells)
-        now = grid[window]
-        now[here] = exchange(predicted[here], relief[here], now[here])
-        grid[window] = now
+        grid[window][here] = exchange(*seen)
         known[window] = here
         n_known += here.size
         report(progress, n_known / valid.size)
+
+
+def _stepped(places: NDArray[np.int64]) -> slice:
+    """Return the slice of places that are equally far apart."""
+    step = int(places[1] - places[0]) if len(places) > 1 else 1
+    return slice(int(places[0]), int(places[-1]) + 1, step)
 
 
 def _passes(shape: tuple[int, int]) -> Iterator[_Pass]:
@@ -374,9 +402,13 @@ def _neighbours(
     grid: NDArray[np.int64], known: NDArray[np.bool_], cells: _Pass, offset: tuple[int, int]
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Return the numbers at an offset from cells, and which of them are known."""
+    shape = len(cells.rows), len(cells.columns)
+    value, is_known = np.zeros(shape), np.zeros(shape, dtype=bool)
     rows, columns = cells.rows + offset[0], cells.columns + offset[1]
-    row_in = (rows >= 0) & (rows < grid.shape[0])
-    column_in = (columns >= 0) & (columns < grid.shape[1])
-    window = np.ix_(np.clip(rows, 0, grid.shape[0] - 1), np.clip(columns, 0, grid.shape[1] - 1))
-    is_known = known[window] & row_in[:, None] & column_in[None, :]
-    return grid[window].astype(np.float64), is_known
+    row_in = np.flatnonzero((rows >= 0) & (rows < grid.shape[0]))
+    column_in = np.flatnonzero((columns >= 0) & (columns < grid.shape[1]))
+    if len(row_in) and len(column_in):
+        inside = _stepped(row_in), _stepped(column_in)
+        window = _stepped(rows[row_in]), _stepped(columns[column_in])
+        value[inside], is_known[inside] = grid[window], known[window]
+    return value, is_known
