@@ -218,7 +218,7 @@ class ClusterDetails(PyramidAlgorithm):
         geo = self.geo_pyramid(request)
         is_learned = _teacher(request) != TEACHERS[0]
         labelled = self._classes(request, geo) if is_learned else self._clusters(request, geo)
-        summary = request.computed(lambda work: labelled.summary(), 0.55, 0.7)
+        summary = request.computed(lambda work: labelled.summary(), 0.5, 0.62)
         word = tr("class") if is_learned else tr("cluster")
         for row in summary["clusters"]:
             request.say(f"{word} {row['label']}: {row['n_vertices']} ({100 * row['share']:.1f} %)")
@@ -247,7 +247,7 @@ class ClusterDetails(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        return request.computed(compute, 0.05, 0.55)
+        return request.computed(compute, 0.05, 0.5)
 
     def _classes(self, request: Request, geo: GeoPyramid) -> Labelled:
         from wavelet_gis.workflows.learning.cluster import classify
@@ -269,7 +269,7 @@ class ClusterDetails(PyramidAlgorithm):
                 progress=work.progress,
             )
 
-        return request.computed(compute, 0.12, 0.55)
+        return request.computed(compute, 0.12, 0.5)
 
     def _given(self, request: Request, geo: GeoPyramid) -> NDArray[np.int64]:
         """Return the classes that are known, below 0 where they are not."""
@@ -306,8 +306,8 @@ def _written(request: Request, labelled: Labelled) -> Values:
     path = request.output_layer("RASTER")
     if path:
         cell_size = request.size("CELL_SIZE")
-        bands = request.computed(lambda work: labelled.raster(cell_size), 0.7, 0.78)
-        report = request.progress(0.78, 0.82)
+        bands = request.computed(lambda work: labelled.raster(cell_size), 0.62, 0.76)
+        report = request.progress(0.76, 0.82)
         write_bands(path, bands, crs_of(labelled.geo), request.feedback, report)
         request.finish("RASTER", path, partial(styles.style_labels, name=labelled.name))
         results["RASTER"] = path
