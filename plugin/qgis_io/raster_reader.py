@@ -141,13 +141,7 @@ def read_dem(raster: RasterInput, feedback: QgsFeedback) -> Dem:
     Cancelled
     """
     dem = None
-    n_bands = raster.provider.bandCount()
-    if not 1 <= raster.band <= n_bands:
-        raise QgsProcessingException(
-            tr("{}: there is no band {}; the raster has {}.").format(
-                raster.name, raster.band, n_bands
-            )
-        )
+    _require_band(raster)
     if raster.path is not None:
         with without_exceptions(gdal, partial(_unreadable, raster)):
             dem = _read_with_gdal(raster, raster.path, feedback)
@@ -182,6 +176,7 @@ def read_window(raster: RasterInput, path: str, window: CellWindow, feedback: St
         No such band, or a file that cannot be read.
     Cancelled
     """
+    _require_band(raster)
     with without_exceptions(gdal, partial(_unreadable, raster)):
         dem = _read_with_gdal(raster, path, feedback, window)
     if dem is None:
@@ -349,6 +344,16 @@ def _closed_ends(bounds: QgsRasterRange.BoundsType) -> tuple[bool, bool]:
     kinds = QgsRasterRange.BoundsType
     has_low = bounds in (kinds.IncludeMinAndMax, kinds.IncludeMin)
     return has_low, bounds in (kinds.IncludeMinAndMax, kinds.IncludeMax)
+
+
+def _require_band(raster: RasterInput) -> None:
+    n_bands = raster.provider.bandCount()
+    if not 1 <= raster.band <= n_bands:
+        raise QgsProcessingException(
+            tr("{}: there is no band {}; the raster has {}.").format(
+                raster.name, raster.band, n_bands
+            )
+        )
 
 
 def _unreadable(raster: RasterInput, reason: str) -> QgsProcessingException:

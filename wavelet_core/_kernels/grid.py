@@ -11,6 +11,12 @@ def square(ids, row, column):
     )  # fmt: skip
 
 
+# How many of the corners are cells; whole numbers, since the sum of numpy's bools is a bool
+@inlined
+def n_cells(a, b, d, e):
+    return int(a >= 0) + int(b >= 0) + int(d >= 0) + int(e >= 0)
+
+
 # How many faces the squares between the rows r and r + 1 have; ids (n_rows, n_columns) int32, -1
 # where there is no cell; counts (n_rows - 1,) int64, filled
 @kernel
@@ -19,8 +25,7 @@ def count_grid_faces(start, stop, ids, counts):
         n_faces = 0
         for column in range(ids.shape[1] - 1):
             a, b, d, e = square(ids, row, column)
-            n_corners = (a >= 0) + (b >= 0) + (d >= 0) + (e >= 0)
-            n_faces += max(n_corners - 2, 0)
+            n_faces += max(n_cells(a, b, d, e) - 2, 0)
         counts[row] = n_faces
 
 
@@ -33,7 +38,7 @@ def fill_grid_faces(start, stop, ids, first, is_clockwise, faces):
         face = first[row]
         for column in range(ids.shape[1] - 1):
             a, b, d, e = square(ids, row, column)
-            if (a >= 0) + (b >= 0) + (d >= 0) + (e >= 0) < 3:
+            if n_cells(a, b, d, e) < 3:
                 continue
             if a < 0:
                 p, q, r = b, e, d

@@ -367,3 +367,14 @@ def test_the_plan_says_how_the_file_is_read(tiles, dem):
     plan = json.loads((Path(tiles["OUTPUT"]) / "plan.json").read_text("utf-8"))
     assert plan["files"][0][0] == dem
     assert plan["reading"] == {"band": 1, "nodata": None, "offline": False}
+
+
+def test_a_band_that_is_not_there_is_refused_by_its_number(qgis, dem, tmp_path):
+    """It said that the raster cannot be read, and nothing of why."""
+    import processing
+    from qgis.core import QgsProcessingException
+
+    parameters = {"RASTERS": [dem], "BAND": 2, "TILE": 30, "OUTPUT": str(tmp_path / "set")}
+    with pytest.raises(QgsProcessingException, match="there is no band 2; the raster has 1"):
+        processing.run("terrainwavelets:tileterrain", parameters)
+    assert not (tmp_path / "set").exists()
