@@ -42,6 +42,7 @@ ROOMS = {
         "_fields",
         "_program",
         "_memory",
+        "_allocator",
         "progress",
         "notes",
         "crs",

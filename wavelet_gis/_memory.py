@@ -26,42 +26,6 @@ BYTES_A_CHANNEL = 120
 SMALL_INPUT = 1_000_000
 
 
-#: What `mallopt` of the GNU C library calls its limits, and what they are set to: blocks of up to
-#: a gigabyte come from memory that was freed before, of which an eighth of that may lie idle.
-_MALLOPT = {"M_MMAP_THRESHOLD": (-3, 1 << 30), "M_TRIM_THRESHOLD": (-1, 1 << 27)}
-
-_keeps_freed = False
-
-
-def keep_freed_memory() -> None:
-    """Let this process use the memory of large arrays again, for programs of our own alone.
-
-    The GNU C library hands the memory of every array above 32 MB back to the system at once, which
-    clears it before it is used anew: a sixth of the time of an analysis of millions of vertices.
-    Elsewhere nothing changes.
-    """
-    global _keeps_freed
-    library = _c_library()
-    if library is not None and not _keeps_freed:
-        for parameter, value in _MALLOPT.values():
-            library.mallopt(parameter, value)
-        _keeps_freed = True
-
-
-def give_memory_back() -> None:
-    """Hand back what is free, between parts of the work that need different arrays."""
-    library = _c_library()
-    if _keeps_freed and library is not None:
-        library.malloc_trim(0)
-
-
-def _c_library() -> ctypes.CDLL | None:
-    if not sys.platform.startswith("linux"):
-        return None
-    library = ctypes.CDLL(None)
-    return library if hasattr(library, "mallopt") and hasattr(library, "malloc_trim") else None
-
-
 def analysis_bytes(n_vertices: int, n_channels: int) -> int:
     """Return what an analysis takes beside its input.
 

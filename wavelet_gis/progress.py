@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from time import perf_counter
 
-from wavelet_gis._memory import give_memory_back
+from wavelet_gis._allocator import give_memory_back
 
 __all__ = ["Clock"]
 

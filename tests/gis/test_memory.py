@@ -105,3 +105,30 @@ def test_the_group_of_a_process_is_that_of_the_version(tmp_path):
     listed.write_text("0::/user\n")
     assert _memory._own_group("memory", listed) == ""
     assert _memory._own_group("memory", tmp_path / "none") == ""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="is about the GNU C library")
+def test_freed_memory_is_kept_until_it_is_given_back():
+    program = """
+import ctypes, numpy as np, psutil
+from wavelet_gis import _allocator
+
+def resident():
+    return psutil.Process().memory_info().rss / 1e6
+
+def freed():
+    np.ones(100_000_000, np.uint8).fill(1)
+    return resident()
+
+assert _allocator._c_library() is not None
+resting = freed()
+_allocator.give_memory_back()
+_allocator.keep_freed_memory()
+kept = freed()
+_allocator.give_memory_back()
+print(kept - resting, resident() - resting)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    kept, left = map(float, done.stdout.split())
+    assert kept > 80
+    assert left < 20

@@ -38,14 +38,22 @@ def errors_by_level(pyramid: Pyramid, points: FloatArray) -> Iterator[FloatArray
     assert pyramid.horizontal is not None
     ids = pyramid._ids_by_level(0)
     near = _faces_near(pyramid, ids, points)
+    lone = _lone_vertices(pyramid)
     for level, coefficients in pyramid._coefficients(ids):
-        used, faces = np.unique(near.pop(), return_inverse=True)
-        vertices = np.column_stack([pyramid.horizontal[ids[level][used]], coefficients[used, 0]])
-        part = TriangleMesh._trusted(vertices, faces.reshape(-1, 3), np.empty((len(used), 0)), ())
-        errors = surface_errors(part, points)
-        if np.isnan(errors).any():  # on a vertex without faces, if anywhere
-            errors = surface_errors(pyramid.mesh(level), points)
-        yield errors
+        corners = near.pop().ravel()
+        vertices = np.concatenate([corners, np.searchsorted(ids[level], lone)])
+        used, places = np.unique(vertices, return_inverse=True)
+        faces = places[: len(corners)].reshape(-1, 3)
+        points_of = np.column_stack([pyramid.horizontal[ids[level][used]], coefficients[used, 0]])
+        part = TriangleMesh._trusted(points_of, faces, np.empty((len(used), 0)), ())
+        yield surface_errors(part, points)
+
+
+def _lone_vertices(pyramid: Pyramid) -> NDArray[np.int64]:
+    """Return the vertices without faces: the same in all levels, since none goes or joins them."""
+    is_lone = np.ones(pyramid.n_vertices(pyramid.n_levels), dtype=bool)
+    is_lone[pyramid.faces] = False
+    return np.flatnonzero(is_lone)
 
 
 def _faces_near(

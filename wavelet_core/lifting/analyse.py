@@ -15,7 +15,7 @@ from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.connectivity import build_connectivity
 from ..mesh.location import surface_errors
 from ..mesh.triangle_mesh import TriangleMesh
-from ..partition._mutable_level import LevelFigures
+from ..partition._level_figures import LevelFigures
 from ..partition.error_guided import DEFAULT_LEVELS, SurfaceRules, analyse_surface
 from ..partition.orderings import LevelView, Partition
 from ..partition.registry import PARTITIONS, PartitionInput

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex
@@ -14,7 +15,7 @@ from .._validate import FloatArray, IntArray, are_equal, counted, frozen, owned
 from ..errors import OptionError, PyramidError
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
-from ..partition._mutable_level import LevelFigures
+from ..partition._level_figures import LevelFigures
 from ..partition.stopping import StopRecord
 from ..progress import Progress
 from ._checks import check_parts
@@ -263,8 +264,7 @@ class Pyramid:
             The input.
         """
         ids = {} if self.locked is None else self._ids_by_level(0)
-        for _, coefficients in self._coefficients(ids):  # noqa: B007
-            pass
+        ((_, coefficients),) = deque(self._coefficients(ids), maxlen=1)  # the last one
         return self._assemble(coefficients, slice(None), mesh.faces)
 
     def detail(self, level: int) -> Detail:

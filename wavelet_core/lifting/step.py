@@ -12,8 +12,7 @@ from scipy.sparse import csr_array
 from .._kernels._jit import run_in_ranges
 from .._kernels.update import predict_rows
 from .._validate import FloatArray, are_equal, counted, owned
-from .update import UPDATES, Support, apply_ring_means, update_changes
-from .update import coarse_integrals as integrals_of_coarser
+from .update import UPDATES, Support, apply_ring_means, coarse_integrals, update_changes
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -106,7 +105,7 @@ def split_integrals(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of the odd vertices (finer level) and of the coarser level (Eq. 47)."""
     odd_integrals = integrals[odd]
-    return odd_integrals, integrals_of_coarser(prediction, odd_integrals, integrals[even])
+    return odd_integrals, coarse_integrals(prediction, odd_integrals, integrals[even])
 
 
 def analyse_level(
@@ -153,19 +152,19 @@ def synthesise_level(
     method: str,
     integrals: FloatArray,
     locked: NDArray[np.bool_],
-    coarse_integrals: FloatArray | None = None,
+    coarser: FloatArray | None = None,
 ) -> FloatArray:
     """Return the scaling coefficients of the finer level: the mirror of :func:`analyse_level`.
 
-    ``coarse_integrals`` are those of the coarser level, where they are known.
+    ``coarser`` are the integrals of the coarser level, where they are known.
     """
     update = UPDATES.find(method)
     if update.is_sequential:
         coarse = apply_ring_means(coarse, details, prediction, locked[even], undo=True)
     elif not update.is_empty:
-        if coarse_integrals is None:
-            coarse_integrals = split_integrals(integrals, odd, even, prediction)[1]
-        support = Support(prediction, integrals[odd], coarse_integrals, locked[even])
+        if coarser is None:
+            coarser = split_integrals(integrals, odd, even, prediction)[1]
+        support = Support(prediction, integrals[odd], coarser, locked[even])
         coarse = coarse - update_changes(method, support, details)  # Eq. 32
     fine = np.empty((len(odd) + len(even), coarse.shape[1]))
     fine[even] = coarse

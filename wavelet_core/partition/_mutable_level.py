@@ -37,11 +37,12 @@ from .._kernels.surface_points import (
     sum_over_stars,
     update_heights,
 )
-from .._threads import centre_of, rows_at, run_in_blocks
+from .._threads import centre_of, rows_at
 from .._validate import FloatArray, frozen
 from ..mesh.half_edges import half_edges_of
 from ..mesh.location import cover_of
 from ..mesh.triangle_mesh import TriangleMesh
+from ._level_figures import LevelFigures, changes_of, largest_of_faces, squared_of_faces
 from ._level_state import FaceState, VertexState
 from .outline import tolerant_outline
 from .questions import Collapses, Sight
@@ -77,25 +78,6 @@ class CollapseStep(NamedTuple):
     indices: NDArray[np.int32]
     weights: FloatArray
     details: FloatArray
-
-
-class LevelFigures(NamedTuple):
-    """Sizes and errors of a level.
-
-    n_vertices, n_faces : int
-    n_points : int, input vertices, and points of a finer input if there are any
-    squared_errors : float, sum of the squared height errors of all of these
-    largest_error : float, the largest of them
-    squared_changes : (c,) float64, of each weighted column the sum of the squared differences of
-        the level's vertices from the input
-    """
-
-    n_vertices: int
-    n_faces: int
-    n_points: int
-    squared_errors: float
-    largest_error: float
-    squared_changes: FloatArray
 
 
 class SurfaceLevel:
@@ -279,52 +261,24 @@ class SurfaceLevel:
 
     def figures(self) -> LevelFigures:
         """Return sizes and errors of the level as it is now."""
-        squared_changes, largest_change = self._changes()
+        squared_changes, largest_change = changes_of(self._surface, self._vertices)
         return LevelFigures(
             self.n_vertices,
             int(np.count_nonzero(self._faces.lives)),
             self.n_input,
-            self._squared_of_faces() + float(squared_changes[0]),
-            max(self._largest_of_faces(), largest_change),
+            squared_of_faces(self._faces) + float(squared_changes[0]),
+            max(largest_of_faces(self._faces), largest_change),
             squared_changes,
         )
 
     def squared_errors(self) -> float:
         """Return the sum of the squared height errors of all input vertices."""
-        return self._squared_of_faces() + float(self._changes()[0][0])
+        squared_changes, _ = changes_of(self._surface, self._vertices)
+        return squared_of_faces(self._faces) + float(squared_changes[0])
 
     def largest_error(self) -> float:
         """Return the largest height error of all input vertices."""
-        return max(self._largest_of_faces(), self._changes()[1])
-
-    def _squared_of_faces(self) -> float:
-        faces = self._faces
-        squared = faces.squared_z if len(faces.squared_z) else faces.squared
-
-        def summed(start: int, stop: int) -> float:
-            return float(squared[start:stop][faces.lives[start:stop]].sum())
-
-        return sum(run_in_blocks(summed, len(squared)), start=0.0)
-
-    def _largest_of_faces(self) -> float:
-        faces = self._faces
-
-        def largest(start: int, stop: int) -> float:
-            of_block = faces.largest_z[start:stop][faces.lives[start:stop]]
-            return float(of_block.max(initial=0.0))
-
-        return float(np.sqrt(max(run_in_blocks(largest, len(faces.largest_z)), default=0.0)))
-
-    def _changes(self) -> tuple[FloatArray, float]:
-        """Return how far the level's vertices are from the input: see LevelFigures; the largest."""
-        z, measured, lives = self._surface.z, self._surface.measured, self._vertices.lives
-
-        def of_block(start: int, stop: int) -> tuple[FloatArray, float]:
-            change = (z[start:stop] - measured[start:stop])[lives[start:stop]]
-            return (change**2).sum(axis=0), float(np.abs(change[:, 0]).max(initial=0.0))
-
-        squared, largest = zip(*run_in_blocks(of_block, len(lives)), strict=True)
-        return np.sum(squared, axis=0), max(largest)
+        return max(largest_of_faces(self._faces), changes_of(self._surface, self._vertices)[1])
 
     # -- which vertices go -----------------------------------------------------------------------
 

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._validate import FloatArray, frozen
-from ._mutable_level import CollapseStep, LevelFigures, SurfaceLevel
+from ._level_figures import LevelFigures
+from ._mutable_level import CollapseStep, SurfaceLevel
 from .questions import Collapses
 
 #: Share of the vertices that a level may take, at most, unless more cost nothing. Half of them is

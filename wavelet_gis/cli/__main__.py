@@ -13,7 +13,7 @@ from wavelet_gis.cli import interrupts
 def program() -> int:
     """Run the command line and return its exit code."""
     interrupts.quit_at_once()
-    from wavelet_gis._memory import keep_freed_memory
+    from wavelet_gis._allocator import keep_freed_memory
     from wavelet_gis.cli.main import main
 
     keep_freed_memory()

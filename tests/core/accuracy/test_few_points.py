@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from helpers_meshes import grid_with_holes, random_delaunay
 
-from wavelet_core import TriangleMesh, analyse
+from wavelet_core import Pyramid, TriangleMesh, analyse
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.accuracy.few_points import errors_by_level
 from wavelet_core.metrics import surface_errors
@@ -37,3 +37,13 @@ def test_errors_are_those_of_whole_levels(name, engine_name):
         assert len(found) == len(pyramid)
         for errors, level in zip(found, pyramid, strict=True):
             np.testing.assert_array_equal(errors, surface_errors(level, asked))
+
+
+def test_points_that_no_face_covers_cost_no_whole_levels(monkeypatch):
+    """Each level was made anew for one of them: as many syntheses as levels."""
+    mesh = _lone_vertex()
+    pyramid = analyse(mesh, target_vertices=25)
+    points = np.array([[50.0, 50.0, 9.0], [1e4, 0.0, 0.0]])
+    monkeypatch.setattr(Pyramid, "mesh", lambda *_: pytest.fail("a whole level was made"))
+    for errors in errors_by_level(pyramid, points):
+        np.testing.assert_array_equal(errors, [6.0, np.nan])

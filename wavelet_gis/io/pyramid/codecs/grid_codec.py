@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -312,27 +313,36 @@ def _walk(
     n_known = 0
     known = np.zeros(valid.shape, dtype=bool)
     for cells in _passes(valid.shape):
-        n_rows, n_columns = len(cells.rows), len(cells.columns)
-        columns = _stepped(cells.columns)
-
-        def look(start: int, stop: int) -> tuple[NDArray[Any], ...]:
-            part = cells._replace(rows=cells.rows[start:stop])  # noqa: B023 (called at once)
-            window = _stepped(part.rows), columns  # noqa: B023
-            here = valid[window]
-            predicted, relief = _predict(grid, known, part)
-            return predicted[here], relief[here], grid[window][here]
-
-        at_once = max(_CELLS_AT_ONCE // n_columns, 1)
-        seen = [
-            np.concatenate(parts)
-            for parts in zip(*run_in_blocks(look, n_rows, at_once), strict=True)
-        ]
-        window = _stepped(cells.rows), columns
+        at_once = max(_CELLS_AT_ONCE // len(cells.columns), 1)
+        look = partial(_seen, grid, known, valid, cells)
+        by_block = run_in_blocks(look, len(cells.rows), at_once)
+        seen = [np.concatenate(parts) for parts in zip(*by_block, strict=True)]
+        window = _window(cells)
         here = valid[window]
         grid[window][here] = exchange(*seen)
         known[window] = here
         n_known += here.size
         report(progress, n_known / valid.size)
+
+
+def _seen(
+    grid: NDArray[np.int64],
+    known: NDArray[np.bool_],
+    valid: NDArray[np.bool_],
+    cells: _Pass,
+    start: int,
+    stop: int,
+) -> tuple[NDArray[np.int64], NDArray[np.uint16], NDArray[np.int64]]:
+    """Return what the valid cells of some rows are predicted, the relief there, and the numbers."""
+    part = cells._replace(rows=cells.rows[start:stop])
+    window = _window(part)
+    here = valid[window]
+    predicted, relief = _predict(grid, known, part)
+    return predicted[here], relief[here], grid[window][here]
+
+
+def _window(cells: _Pass) -> tuple[slice, slice]:
+    return _stepped(cells.rows), _stepped(cells.columns)
 
 
 def _stepped(places: NDArray[np.int64]) -> slice:
