@@ -218,7 +218,7 @@ class ClusterDetails(PyramidAlgorithm):
         geo = self.geo_pyramid(request)
         is_learned = _teacher(request) != TEACHERS[0]
         labelled = self._classes(request, geo) if is_learned else self._clusters(request, geo)
-        summary = request.computed(lambda work: labelled.summary(), 0.5, 0.62)
+        summary = request.computed(lambda work: labelled.summary(work.progress), 0.5, 0.62)
         word = tr("class") if is_learned else tr("cluster")
         for row in summary["clusters"]:
             request.say(f"{word} {row['label']}: {row['n_vertices']} ({100 * row['share']:.1f} %)")
@@ -306,7 +306,7 @@ def _written(request: Request, labelled: Labelled) -> Values:
     path = request.output_layer("RASTER")
     if path:
         cell_size = request.size("CELL_SIZE")
-        bands = request.computed(lambda work: labelled.raster(cell_size), 0.62, 0.76)
+        bands = request.computed(lambda work: labelled.raster(cell_size, work.progress), 0.62, 0.76)
         report = request.progress(0.76, 0.82)
         write_bands(path, bands, crs_of(labelled.geo), request.feedback, report)
         request.finish("RASTER", path, partial(styles.style_labels, name=labelled.name))

@@ -29,8 +29,9 @@ Result = TypeVar("Result")
 LOOK, SILENCE = 0.1, 0.8
 #: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): a step.
 LEAST = 0.001
-#: How far, of a work's part, the clock's steps may lead what was reported; in narrow parts so many
-#: steps that are seen. Of work that has said nothing for so many seconds they may lead by more.
+#: How far, of what a work has left, the clock's steps may lead what was reported, so that some of
+#: the bar is left for the end; in narrow parts so many steps that are seen. Of work that has said
+#: nothing for so many seconds they may lead by more.
 AHEAD, STEPS_AHEAD = 0.05, 8
 LONG_SILENCE, FAR_AHEAD = 2.0, 0.25
 #: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
@@ -57,7 +58,6 @@ class Bar:
 
     def __init__(self, now: float, width: float = 1.0) -> None:
         self._least = LEAST / max(width, LEAST)
-        self._ahead = max(AHEAD, STEPS_AHEAD * self._least)
         self._shown, self._reported = 0.0, 0.0
         self._seen, self._moved = 0.0, now
         self._began, self._looked, self._heard = now, now, now
@@ -90,7 +90,8 @@ class Bar:
     def _step(self, now: float) -> float:
         """Return what the clock adds where nothing new was seen for a while."""
         is_silent = now - self._heard > LONG_SILENCE
-        ahead = max(self._ahead, FAR_AHEAD) if is_silent else self._ahead
+        ahead = (FAR_AHEAD if is_silent else AHEAD) * (1.0 - self._reported)
+        ahead = max(ahead, STEPS_AHEAD * self._least)
         if self._shown < self._reported + ahead:
             return 1.01 * self._least
         trickle = TRICKLE if self._reported > 0.0 else FIRST_TRICKLE

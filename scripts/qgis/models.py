@@ -424,28 +424,39 @@ def dems_to_change_by_scale():
     """Two DEMs of different years to their difference, by scale."""
     model = Model(
         "Two DEMs to change by scale",
-        "Subtracts a DEM from a later one of the same cells and keeps the change that is larger on "
-        "the ground than you say: slides and fills stay, noise and vegetation go. A map for each "
-        "level shows at which scale the change is.",
+        "Subtracts a DEM from a later one and keeps the change that is larger on the ground than "
+        "you say: slides and fills stay, noise and vegetation go. A map for each level shows at "
+        "which scale the change is.",
     )
-    model.input(QgsProcessingParameterRasterLayer("BEFORE", "Earlier DEM"), "Elevations.")
     model.input(
-        QgsProcessingParameterRasterLayer("AFTER", "Later DEM"), "Elevations of the same cells."
+        QgsProcessingParameterRasterLayer("BEFORE", "Earlier DEM"),
+        "Elevations. The change is on its cells.",
+    )
+    model.input(
+        QgsProcessingParameterRasterLayer("AFTER", "Later DEM"),
+        "Elevations in the same CRS; its cells may differ, its surface is read off between them.",
     )
     model.input(
         optional_number("SMALLEST_SIZE", "Smallest size of a change", DOUBLE, 20.0),
         "Change that is smaller on the ground is left out; in the unit of x and y.",
     )
+    # Not GDAL's raster calculator, which takes cells of one grid only and ends in a traceback.
+    model.step(
+        "later",
+        "terrainwavelets:analysedem",
+        "Take the surface of the later DEM",
+        INPUT=input_("AFTER"),
+        LEVELS=1,
+        PARTITION="random",
+        PREDICTION="plane",
+    )
     model.step(
         "difference",
-        "gdal:rastercalculator",
-        "Subtract",
-        INPUT_A=input_("BEFORE"),
-        BAND_A=1,
-        INPUT_B=input_("AFTER"),
-        BAND_B=1,
-        FORMULA="B.astype(numpy.float64)-A",
-        RTYPE=5,
+        "terrainwavelets:difference",
+        "Subtract the earlier DEM",
+        INPUT=result("later", "OUTPUT"),
+        LEVEL=result("later", "N_LEVELS"),
+        LESS_DEM=input_("BEFORE"),
     )
     model.step(
         "analyse",

@@ -260,6 +260,49 @@ def test_dems_to_change_by_scale(run_model, tmp_path):
     assert layers["Change by level"].bandCount() == 12
 
 
+def test_dems_of_other_cells_to_change_by_scale(run_model, tmp_path):
+    """GDAL's calculator, which the model began with, ended in a traceback of numpy's."""
+    rows, columns = np.mgrid[:40, :50]
+    before = (rows + 2.0 * columns).astype("float32")  # a plane: read off exactly between cells
+    rows, columns = np.mgrid[:90, :110]
+    after = (0.5 * rows - 0.25 + 2.0 * (0.5 * columns - 0.25) + 3.0).astype("float32")
+    results, _ = run_model(
+        "dems_to_change_by_scale",
+        {
+            "BEFORE": write_raster(tmp_path / "a.tif", before),
+            "AFTER": write_raster(tmp_path / "b.tif", after, cell=5.0),
+            "change": str(tmp_path / "change.tif"),
+        },
+    )
+    change = np.frombuffer(read_raster(results["change"])["bytes"], "f4").reshape(before.shape)
+    assert np.allclose(change, 3.0, atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("moved", "says"),
+    [
+        ({"epsg": 25832}, "CRS"),
+        ({"origin": (900000.0, 6600000.0)}, "overlap"),
+    ],
+)
+def test_dems_that_have_nothing_in_common_are_refused_in_one_line(provider, tmp_path, moved, says):
+    from qgis.core import QgsProcessingContext, QgsProcessingException
+
+    flat = np.full((30, 30), 5.0, dtype="float32")
+    model, log = provider.algorithm("dems_to_change_by_scale").create(), Log()
+    parameters = {
+        "BEFORE": write_raster(tmp_path / "earlier.tif", flat),
+        "AFTER": write_raster(tmp_path / "later.tif", flat, **moved),
+        "change": str(tmp_path / "change.tif"),
+    }
+    with pytest.raises(QgsProcessingException) as refused:
+        model.run(parameters, QgsProcessingContext(), log, {}, False)
+    said = [*log.errors, *log.warnings, str(refused.value)]
+    assert all("Traceback" not in line for line in said), said
+    assert says in said[-1]
+    assert "\n" not in said[-1].strip()
+
+
 def test_dem_to_landform_clusters(run_model, tmp_path):
     rough = np.random.default_rng(1).normal(size=(80, 100)) * 3.0
     rough[:, :50] = 0

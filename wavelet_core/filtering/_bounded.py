@@ -19,6 +19,8 @@ TOLERANCE = 1e-10
 MOST_STEPS = 10
 #: Rows whose products are summed at once.
 ROWS_AT_ONCE = 4096
+#: Blocks between two ticks: a pass over a large mesh takes as long as hundreds of blocks.
+BLOCKS_OF_TICK = 16
 
 
 def moments_of(columns: FloatArray, tick: Callable[[], None] = lambda: None) -> FloatArray:
@@ -36,8 +38,14 @@ def moments_of(columns: FloatArray, tick: Callable[[], None] = lambda: None) -> 
         block = np.ascontiguousarray(columns[first : first + ROWS_AT_ONCE].T)
         for k in range(n_columns):
             moments[k, : k + 1] += np.einsum("jv,v->j", block[: k + 1], block[k])
-        tick()
+        if (first // ROWS_AT_ONCE + 1) % BLOCKS_OF_TICK == 0:
+            tick()
     return np.tril(moments) + np.tril(moments, -1).T
+
+
+def ticks_of_moments(n_rows: int) -> int:
+    """Return how often `moments_of` ticks."""
+    return -(-n_rows // ROWS_AT_ONCE) // BLOCKS_OF_TICK
 
 
 def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._validate import FloatArray
-from ._bounded import ROWS_AT_ONCE, least_within, moments_of
+from ._bounded import least_within, moments_of, ticks_of_moments
 from .undecimated import Rings
 
 #: Differences of the first result, in deviations of the noise, at which the weight of a neighbour
@@ -36,7 +36,7 @@ def n_ticks(n_vertices: int) -> int:
     """Return how often `edge_kept` ticks."""
     if n_vertices < LEAST_FOR_GUIDED:
         return 0
-    return len(WIDTHS) * (1 + ROUNDS[-1]) + -(-n_vertices // ROWS_AT_ONCE)
+    return len(WIDTHS) * (1 + ROUNDS[-1]) + ticks_of_moments(n_vertices)
 
 
 def edge_kept(

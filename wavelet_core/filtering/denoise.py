@@ -17,10 +17,10 @@ from ..lifting.pyramid import Pyramid
 from ..mesh.triangle_mesh import TriangleMesh
 from ..progress import Meter, Progress, report
 from . import _guided, _weighted_sum
-from ._bounded import ROWS_AT_ONCE
+from ._bounded import ticks_of_moments
 from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
-from .noise.model import Noise, RangeOption, noise_of
+from .noise.model import Noise, RangeOption, noise_of, ticks_of_noise
 from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
 from .noise.rounding import FILL_ROUNDS, ROUNDS_OF_SHARE, without_terraces
 from .noise.stripes import NO_LINE, STEPS_OF_STRIPES, check_lines
@@ -35,10 +35,10 @@ SCALES_PER_LEVEL = 0.5
 N_PYRAMIDS = 4
 #: A pyramid for denoising stops where its mesh would be smaller than this.
 LEAST_VERTICES = 100
-#: For the progress: the share of what goes before the pyramids; that of the analysis in a pyramid;
-#: the time that the details of all vertices take, in pyramids of the engine, and the share in it of
-#: making their filters.
-BEFORE_PYRAMIDS, OF_ANALYSIS, OF_BANK = 0.03, 0.85, 0.25
+#: For the progress: the share of what goes before the pyramids, where the noise is known and where
+#: it is to be found; that of the analysis in a pyramid; the time that the details of all vertices
+#: take, in pyramids of the engine, and the share in it of making their filters.
+BEFORE_PYRAMIDS, TO_FIND_NOISE, OF_ANALYSIS, OF_BANK = 0.03, 0.15, 0.85, 0.25
 TIME_OF_VERTICES = {"compiled": 3.2, "arrays": 0.7, "loops": 3.2}
 
 
@@ -164,7 +164,13 @@ def denoise(
     meter = Meter(progress, "denoising was cancelled; nothing was kept.")
     n_steps = OUTLIER_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
     n_steps += 0 if line is None else STEPS_OF_STRIPES
-    meter.begin(0.0, BEFORE_PYRAMIDS, n_steps * len(chosen))
+    before = BEFORE_PYRAMIDS
+    if sigma is None or noise_range != 0.0 or local_noise:
+        before, n_steps = (
+            TO_FIND_NOISE,
+            n_steps + ticks_of_noise(mesh.n_vertices, sigma is not None),
+        )
+    meter.begin(0.0, before, n_steps * len(chosen))
     noises = {}
     for name, c in chosen.items():
         given = columns[:, c].copy()
@@ -194,7 +200,7 @@ def denoise(
         weighted = [
             decompositions.weighted_sum(columns[:, chosen[name]], noises[name]) for name in noisy
         ]
-        decompositions.run(weighted)
+        decompositions.run(weighted, before)
         for name, one in zip(noisy, weighted, strict=True):
             columns[:, chosen[name]] = one.result
     report(progress, 1.0, "denoising was cancelled; nothing was kept.")
@@ -233,12 +239,12 @@ class _Decompositions:
         """Return the sum of a column's details, whose weights are yet to be fitted."""
         return WeightedSum(values, noise, self._n_pyramids, self._levels, self._seed)
 
-    def run(self, weighted: Sequence[WeightedSum]) -> None:
-        """Fit the weights of every column and sum."""
+    def run(self, weighted: Sequence[WeightedSum], begin: float) -> None:
+        """Fit the weights of every column and sum; ``begin`` is the share of the work before."""
         of_vertices = TIME_OF_VERTICES[current_engine()]
-        span = (1.0 - BEFORE_PYRAMIDS) / (self._n_pyramids + of_vertices)
+        span = (1.0 - begin) / (self._n_pyramids + of_vertices)
         for k in range(self._n_pyramids):
-            start, stop = BEFORE_PYRAMIDS + k * span, BEFORE_PYRAMIDS + (k + 1) * span
+            start, stop = begin + k * span, begin + (k + 1) * span
             self._meter.begin(start, start + OF_ANALYSIS * span, 1)
             pyramid = self._analysed(self._seed * 1_000_003 + k)
             n_steps = (4 + 9 * len(weighted)) * self._levels
@@ -263,7 +269,7 @@ class _Decompositions:
         )
         rounds = sum(VERTEX_ROUNDS + k for k in range(plain.n_scales)) * plain.n_parts
         rounds += 2 ** (plain.n_scales - 1)
-        n_blocks = min(n, _weighted_sum.MAX_FITTED) // ROWS_AT_ONCE
+        n_blocks = ticks_of_moments(min(n, _weighted_sum.MAX_FITTED))
         n_steps = len(weighted) * (2 * rounds + n_blocks + _guided.n_ticks(n))
         n_steps += sum(FILL_ROUNDS + ROUNDS_OF_SHARE for w in weighted if w.noise.rounding.step > 0)
         meter.begin(middle, 0.999, n_steps)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import Progress, TriangleMesh
-from wavelet_core.progress import report
+from wavelet_core.progress import report, watched_part
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import GridGeometry, grid_bounds
 from wavelet_gis.model.geo_pyramid import GeoPyramid
@@ -20,6 +20,8 @@ from wavelet_gis.products.rasterise import geometry_over, rasterise
 
 __all__ = ["Bands", "grid_of", "label_band", "point_cell_size", "value_bands"]
 
+#: Cells whose nearest vertices are looked for between two reports.
+CELLS_AT_ONCE = 100_000
 #: Stored in cells without a label.
 NO_LABEL = 255
 
@@ -138,6 +140,7 @@ def label_band(
     labels: NDArray[np.integer[Any]],
     name: str,
     cell_size: float | None = None,
+    progress: Progress | None = None,
 ) -> Bands:
     """Labels of vertices as a raster of bytes: each cell has that of the vertex nearest in plan.
 
@@ -153,11 +156,15 @@ def label_band(
         Of the band.
     cell_size : float, optional
         See `grid_of`.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Raises
     ------
     InputFileError
         A label above 254.
+    Cancelled
+        ``progress`` returned False.
     """
     if labels.max(initial=0) >= NO_LABEL:
         raise InputFileError(
@@ -173,13 +180,19 @@ def label_band(
         from scipy.spatial import cKDTree
 
         in_file = geo.file_mesh(mesh)
-        covered = fill_lone_cells(rasterise(in_file, geometry), in_file, geometry)
+        with watched_part(progress, 0.0, 0.3):
+            covered = fill_lone_cells(rasterise(in_file, geometry), in_file, geometry)
         rows, columns = np.nonzero(np.isfinite(covered))
         x, y = geometry.centres(columns, rows)
         local = np.column_stack([geo.frame.local_x(x), geo.frame.local_y(y)])
-        if len(local):
-            nearest = cKDTree(mesh.vertices[:, :2]).query(local)[1]
-            values[0, rows, columns] = stored[nearest]
+        report(progress, 0.35)
+        vertices = cKDTree(mesh.vertices[:, :2])
+        for first in range(0, len(local), CELLS_AT_ONCE):
+            report(progress, 0.5 + 0.5 * first / len(local))
+            part = slice(first, first + CELLS_AT_ONCE)
+            nearest = vertices.query(local[part])[1]
+            values[0, rows[part], columns[part]] = stored[nearest]
+    report(progress, 1.0)
     return Bands(values, (name,), geometry)
 
 

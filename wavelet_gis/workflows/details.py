@@ -166,7 +166,8 @@ class Details:
         mesh = geo.pyramid.mesh(self.level)
         if self.what == "level":
             name = "level at which a vertex went"
-            return label_band(geo, mesh, vertex_details(geo.pyramid).level, name, cell_size)
+            levels = vertex_details(geo.pyramid).level
+            return label_band(geo, mesh, levels, name, cell_size, progress)
         columns_of, word = _BY_LEVEL[self.what]
         columns = columns_of(geo, self.channel, part_of(progress, 0.0, 0.15))
         names = band_names(geo, word, part_of(progress, 0.15, 0.5))

@@ -6,6 +6,8 @@ from scipy import ndimage
 
 from wavelet_core import Cancelled, OptionError, TriangleMesh, denoise
 from wavelet_core.filtering import _weighted_sum
+from wavelet_core.filtering._bounded import ROWS_AT_ONCE, moments_of, ticks_of_moments
+from wavelet_core.filtering.denoise import TO_FIND_NOISE
 
 
 def terrain(n=90):
@@ -118,6 +120,24 @@ def test_cancelling_stops_it():
     denoise(mesh_of(terrain(20)), 0.1, n_pyramids=3, progress=lambda f: seen.append(f))
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
+
+
+def test_finding_the_noise_has_its_part_of_the_progress():
+    """It stood still at 3 % for four of five looks, a fifth of the time on a large mesh."""
+    seen = []
+    denoise(mesh_of(terrain(90)), n_pyramids=1, progress=seen.append)
+    before = [fraction for fraction in seen if fraction <= TO_FIND_NOISE]
+    standing = np.diff(before) == 0.0
+    assert len(before) > 60
+    assert standing.mean() < 0.2
+    assert before[-1] > 0.8 * TO_FIND_NOISE
+
+
+def test_few_looks_are_at_sums_of_products():
+    """They were three quarters of the looks in the last part, and a twentieth of its time."""
+    ticks = []
+    moments_of(np.ones((100 * ROWS_AT_ONCE + 1, 1)), lambda: ticks.append(1))
+    assert len(ticks) == ticks_of_moments(100 * ROWS_AT_ONCE + 1) == 6
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from gis.samples import write_las
 
-from wavelet_core import MissingDependencyError, OptionError, analyse
+from wavelet_core import Cancelled, MissingDependencyError, OptionError, analyse
 from wavelet_core.features.signature import (
     Signature,
     energy_signature,
@@ -19,6 +19,7 @@ from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.errors import InputFileError
 from wavelet_gis.model.dem import Dem, GridGeometry
 from wavelet_gis.model.terrain import terrain_of_dem
+from wavelet_gis.products import vertex_raster
 from wavelet_gis.products.label_layer import label_layer
 from wavelet_gis.products.vertex_raster import label_band, value_bands
 from wavelet_gis.products.vertex_tables import energy_columns
@@ -28,6 +29,7 @@ from wavelet_gis.workflows.learning.classification import (
     spatial_folds,
     validate_classes,
 )
+from wavelet_gis.workflows.learning.cluster import Labelled
 from wavelet_gis.workflows.learning.clustering import cluster_summary, cluster_vertices
 from wavelet_gis.workflows.learning.labels import (
     NOT_KNOWN,
@@ -339,6 +341,26 @@ def test_labels_become_a_raster_and_a_layer(raster_record, cloud_record):
     layer = label_layer(cloud_record, ones, np.ones(len(ones)), "class")
     assert layer.name == "classes"
     assert list(layer.fields) == ["vertex_id", "class", "confidence"]
+
+
+def test_labels_report_while_they_become_rasters_and_sums(cloud_record, monkeypatch):
+    """They said nothing of it, so that the bar stood still and a cancel came late."""
+    labels = np.arange(cloud_record.pyramid.synthesise().n_vertices) % 5
+    labelled = Labelled(cloud_record, labels, np.ones(len(labels)), "class", {})
+    whole = labelled.raster(5.0).values
+    monkeypatch.setattr(vertex_raster, "CELLS_AT_ONCE", 50)
+    for work in (lambda tell: labelled.raster(5.0, tell), labelled.summary):
+        seen = [0.0]
+        made = work(seen.append)
+        assert seen == sorted(seen)
+        assert np.diff(seen).max() < 0.71
+        assert len(seen) > 5
+        if not isinstance(made, dict):
+            np.testing.assert_array_equal(made.values, whole)
+            n_cells = np.count_nonzero(whole != 255)
+            assert len([f for f in seen if f > 0.75]) >= n_cells // 50
+        with pytest.raises(Cancelled):
+            work(lambda fraction: fraction < 0.8)
 
 
 def test_value_bands_keep_the_grid_of_a_raster(raster_record):

@@ -149,6 +149,22 @@ def test_the_bar_moves_every_second_while_the_work_says_nothing(qgis, width, sec
     assert moments[-1] > seconds - 1
 
 
+def test_the_bar_keeps_steps_for_the_end_of_long_work(qgis):
+    """Terrain for the web, ten minutes: the clock had led, and the last step took 9 s."""
+    from plugin.qgis_io.background import LEAST, Bar
+
+    width, seconds = 0.95, 640
+    bar = Bar(0.0, width)
+    seen, moments = 0.0, [0.0]
+    for tenth in range(10 * seconds):
+        place = width * bar.at((tenth // 10) / seconds, tenth / 10)
+        if place - seen >= LEAST:
+            seen = place
+            moments.append(tenth / 10)
+    moments.append(float(seconds))
+    assert np.diff(moments).max() <= 1.2
+
+
 def test_a_part_whose_place_was_passed_has_room_too(qgis):
     """The raster of a level after its TIN: the bar stood still for three seconds."""
     from terrain_wavelets.plugin.parameters.request import Request

@@ -11,6 +11,8 @@ from .white import NORMAL_MAD, correlated_noise
 #: Scales by which noise is compared, and the share of the vertices, the flatter ones, whose details
 #: count.
 N_SCALES, SHARE_FLATTER = 3, 0.5
+#: Rounds of averaging over rings that the energy of the coarsest details is taken over.
+ROUNDS_OF_ENERGY = 8
 #: The share of the vertices that are the flattest places: noise of one deviation is the same there.
 SHARE_FLATTEST = 0.05
 #: Share of the vertices, the flatter ones, that show how the finest details grow with relief.
@@ -50,7 +52,7 @@ def _robust_deviations(
         sum(parts[1:], start=parts[0])[:, 0]
         for parts in bank.details((column - column.mean())[:, None])
     ]
-    energy = bank.local_energy(details[-1] ** 2, 8)
+    energy = bank.local_energy(details[-1] ** 2, ROUNDS_OF_ENERGY)
     flat = energy <= np.quantile(energy, share)
     deviations = np.array([np.median(np.abs(one[flat])) / NORMAL_MAD for one in details[:N_SCALES]])
     return np.maximum(deviations, 1e-300)
@@ -71,7 +73,7 @@ def where_relief_ends(bank: UndecimatedBank, values: FloatArray, white: FloatArr
         if scale in (0, N_SCALES):
             together = sum(parts[1:], start=parts[0])
             finest, coarser = (np.abs(together), coarser) if scale == 0 else (finest, together)
-    energy = bank.local_energy(coarser[:, 0] ** 2, 8)
+    energy = bank.local_energy(coarser[:, 0] ** 2, ROUNDS_OF_ENERGY)
     order = np.argsort(energy, kind="stable")
     shares = np.array_split(order, round(1 / SHARE_FLATTEST))[
         : round(SHARE_SLOPED / SHARE_FLATTEST)

@@ -11,9 +11,15 @@ import numpy as np
 from ..._validate import FloatArray, IntArray
 from ...errors import OptionError
 from ...mesh.triangle_mesh import TriangleMesh
-from ..undecimated import UndecimatedBank
+from ..undecimated import N_DIRECTIONS, ROUNDS_OF_SCALE, UndecimatedBank, n_ticks
 from .by_place import map_of_noise
-from .by_scale import N_SCALES, deviations_by_scale, estimated_ranges, where_relief_ends
+from .by_scale import (
+    N_SCALES,
+    ROUNDS_OF_ENERGY,
+    deviations_by_scale,
+    estimated_ranges,
+    where_relief_ends,
+)
 from .outliers import without_outliers
 from .rounding import NO_ROUNDING, Rounding
 from .stripes import Stripes, stripes_of
@@ -24,6 +30,8 @@ from .white import check_sigma, correlated_noise, noise_columns
 STEADY_WHITE, STEADY_CORRELATED = 0.9, 0.8
 #: With fewer vertices than this, relief cannot be separated from noise.
 LEAST_VERTICES = 2_000
+#: How often values are taken apart to find white noise, for the progress.
+TIMES_APART = 5
 
 RangeOption = float | Literal["estimate"]
 
@@ -193,6 +201,15 @@ def noise_of(
     if local_noise:
         noise = _by_place(column, noise, sigma)
     return noise, values
+
+
+def ticks_of_noise(n_vertices: int, is_given: bool) -> int:
+    """Return how often `noise_of` ticks, about, to find the kind of noise, or its deviation too."""
+    n_scales = N_SCALES + 1
+    if is_given:
+        return n_ticks(n_vertices, n_scales)
+    of_details = sum(ROUNDS_OF_SCALE[:n_scales]) + N_DIRECTIONS * n_scales + ROUNDS_OF_ENERGY
+    return n_ticks(n_vertices, n_scales) + TIMES_APART * of_details
 
 
 def _check_range(noise_range: RangeOption) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from wavelet_core import Progress
 from wavelet_core.errors import OptionError
 from wavelet_core.features.signature import energy_signature
-from wavelet_core.progress import part_of
+from wavelet_core.progress import part_of, report, watched_part
 from wavelet_gis.io.atomic import check_output
 from wavelet_gis.io.formats import (
     CLOUD_SUFFIXES,
@@ -75,18 +75,24 @@ class Labelled:
     unlabelled: tuple[int, ...] | None = None
     merges: tuple[tuple[int, int], ...] = ()
 
-    def summary(self) -> dict[str, Any]:
+    def summary(self, progress: Progress | None = None) -> dict[str, Any]:
         """Return size and spectrum of every label; see `cluster_summary`."""
-        return cluster_summary(self.geo, self.labels)
+        return cluster_summary(self.geo, self.labels, progress=progress)
 
     def layer(self) -> Layer:
         """Return the labelled vertices as a layer."""
         return label_layer(self.geo, self.labels, self.confidence, self.name)
 
-    def raster(self, cell_size: float | None = None) -> Bands:
-        """Return the labels as a raster: each cell has that of the vertex nearest in plan."""
-        mesh = self.geo.pyramid.synthesise()
-        return label_band(self.geo, mesh, self.labels, self.name, cell_size)
+    def raster(self, cell_size: float | None = None, progress: Progress | None = None) -> Bands:
+        """Return the labels as a raster: each cell has that of the vertex nearest in plan.
+
+        ``progress`` is called with a fraction in [0, 1]; the work stops when it returns False.
+        """
+        with watched_part(progress, 0.0, 0.5):
+            mesh = self.geo.pyramid.synthesise()
+        report(progress, 0.5)
+        part = part_of(progress, 0.5, 1.0)
+        return label_band(self.geo, mesh, self.labels, self.name, cell_size, part)
 
     def write(self, path: str | os.PathLike[str], *, cell_size: float | None = None) -> None:
         """Write points, a raster or, of classes, a point cloud, by the suffix.

@@ -118,7 +118,10 @@ def cluster_vertices(
 
 
 def cluster_summary(
-    geo: GeoPyramid, labels: IntArray, channel: str | None = None
+    geo: GeoPyramid,
+    labels: IntArray,
+    channel: str | None = None,
+    progress: Progress | None = None,
 ) -> dict[str, Any]:
     """Return size and spectrum of every cluster, or of every class.
 
@@ -130,6 +133,8 @@ def cluster_summary(
         Those below 0 are left out.
     channel : str, optional
         Of the spectrum; by default the geometry.
+    progress : callable, optional
+        Called with a fraction in [0, 1]; the work stops when it returns False.
 
     Returns
     -------
@@ -138,10 +143,12 @@ def cluster_summary(
         ``n_vertices``, ``share`` and ``rms``, the root mean square detail of each level in the
         unit of the input, and ``relative``, that over the one of all vertices.
     """
-    squared = energy_columns(geo, channel) ** 2
+    squared = energy_columns(geo, channel, part_of(progress, 0.0, 0.7)) ** 2
     overall = np.sqrt(squared.mean(axis=0))
     rows = []
-    for label in np.unique(labels[labels >= 0]):
+    present = np.unique(labels[labels >= 0])
+    for k, label in enumerate(present):
+        report(progress, 0.75 + 0.25 * k / len(present))
         inside = labels == label
         rms = np.sqrt(squared[inside].mean(axis=0))
         relative = np.divide(rms, overall, out=np.ones_like(rms), where=overall > 0)
