@@ -99,6 +99,11 @@ class SurfaceLevel:
     outline_tolerance : float
         How far input vertices of the outline may lie from it, in the unit of x and y; with 0 an
         outline vertex goes only where the outline runs straight.
+
+    Raises
+    ------
+    MeshError
+        The faces are no manifold.
     """
 
     #: Whether the removed vertices are kept, face by face, and the errors at them.
