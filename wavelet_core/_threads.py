@@ -18,7 +18,15 @@ from numpy.typing import NDArray
 
 from .errors import OptionError
 
-__all__ = ["THREADS_VARIABLE", "centre_of", "n_threads", "rows_at", "run_in_blocks"]
+__all__ = [
+    "THREADS_VARIABLE",
+    "centre_of",
+    "less",
+    "n_threads",
+    "put_rows",
+    "rows_at",
+    "run_in_blocks",
+]
 
 #: Number of threads for all work; all cores when unset.
 THREADS_VARIABLE = "TERRAIN_WAVELETS_THREADS"
@@ -82,3 +90,23 @@ def rows_at(array: NDArray[Any], places: NDArray[np.integer]) -> NDArray[Any]:
 
     run_in_blocks(fetch, len(places))
     return rows
+
+
+def put_rows(array: NDArray[Any], places: NDArray[np.integer], rows: NDArray[Any]) -> None:
+    """Write ``array[places] = rows``; all places are in range, and no two the same."""
+
+    def put(start: int, stop: int) -> None:
+        array[places[start:stop]] = rows[start:stop]
+
+    run_in_blocks(put, len(places))
+
+
+def less(array: NDArray[np.float64], row: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return ``array - row`` for two dimensions."""
+    difference = np.empty(array.shape)
+
+    def subtract(start: int, stop: int) -> None:
+        np.subtract(array[start:stop], row, out=difference[start:stop])
+
+    run_in_blocks(subtract, len(array))
+    return difference

@@ -7,7 +7,7 @@ import sys
 
 #: Numbers of limits in `mallopt` of the GNU C library, and what they are set to: arrays of up to a
 #: gigabyte come from memory that was freed before, and an eighth of that may lie idle at its end.
-_M_MMAP_THRESHOLD, _LARGEST_REUSED = -3, 1 << 30
+_M_MMAP_THRESHOLD, _LARGEST_REUSED = -3, 1 << 28
 _M_TRIM_THRESHOLD, _MOST_IDLE = -1, 1 << 27
 
 _keeps_freed = False

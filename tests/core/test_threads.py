@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from wavelet_core import analyse, synthetic
-from wavelet_core._threads import BLOCK, THREADS_VARIABLE, centre_of, rows_at, run_in_blocks
+from wavelet_core._threads import (
+    BLOCK,
+    THREADS_VARIABLE,
+    centre_of,
+    less,
+    put_rows,
+    rows_at,
+    run_in_blocks,
+)
 
 
 @pytest.mark.parametrize("n_items", [0, 1, BLOCK, 2 * BLOCK + 1])
@@ -49,3 +57,16 @@ def test_the_figures_of_levels_are_the_same_for_any_number_of_threads(monkeypatc
     for one, other in zip(*measured, strict=True):
         assert one[:-1] == other[:-1]
         np.testing.assert_array_equal(one.squared_changes, other.squared_changes)
+
+
+def test_rows_are_put_and_taken_from_as_by_numpy():
+    rng = np.random.default_rng(0)
+    n = 3 * BLOCK + 5
+    places = rng.permutation(2 * n)[:n]
+    rows = rng.normal(size=(n, 2))
+    array = np.zeros((2 * n, 2))
+    expected = array.copy()
+    expected[places] = rows
+    put_rows(array, places, rows)
+    np.testing.assert_array_equal(array, expected)
+    np.testing.assert_array_equal(less(rows, rows[7]), rows - rows[7])

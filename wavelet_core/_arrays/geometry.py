@@ -1,4 +1,4 @@
-"""Curvature and bending energy on whole arrays; see :mod:`wavelet_core._kernels.geometry`."""
+"""Lengths, areas and curvature on whole arrays; see :mod:`wavelet_core._kernels.geometry`."""
 
 from __future__ import annotations
 
@@ -74,3 +74,15 @@ def bending_energies(start, stop, points, faces, indptr, star, curvature, energy
     of_face = (curvature[a] + curvature[b] + curvature[c]) / 6.0 * doubled_area
     vertex = np.repeat(np.arange(len(energy)), np.diff(indptr))
     energy[:] = np.bincount(vertex, of_face[star], minlength=len(energy))
+
+
+def measure_faces(start, stop, plan, faces, nearest, longest, doubled):
+    block = faces[start:stop]
+    corners = plan[block, :2]
+    sides = np.roll(corners, -1, axis=1) - corners
+    squared = sides[..., 0] * sides[..., 0] + sides[..., 1] * sides[..., 1]
+    for k in range(3):
+        np.minimum.at(nearest, block[:, k], squared[:, k])
+        np.minimum.at(nearest, block[:, (k + 1) % 3], squared[:, k])
+    longest[start:stop] = squared.max(axis=1)
+    doubled[start:stop] = np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])

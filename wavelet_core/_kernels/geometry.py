@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.mesh.curvature`: curvature and bending energy."""
+"""Kernels of lengths, areas and curvature: :mod:`wavelet_core.mesh.curvature` and `.gaps`."""
 
 import math
 
@@ -72,3 +72,21 @@ def bending_energies(start, stop, points, faces, indptr, star, curvature, energy
             doubled_area = math.sqrt(nx * nx + ny * ny + nz * nz)
             total += (curvature[a] + curvature[b] + curvature[c]) / 6.0 * doubled_area
         energy[vertex] = total
+
+
+# Squared lengths in plan: nearest (n,) float64, lowered to that of the shortest edge of each
+# vertex, longest (n_faces,) float64 and doubled (n_faces,) float64, twice the area, filled.
+# plan (n, >= 2) float64; faces (n_faces, 3) int64
+@kernel
+def measure_faces(start, stop, plan, faces, nearest, longest, doubled):
+    for face in range(start, stop):
+        a, b, c = faces[face, 0], faces[face, 1], faces[face, 2]
+        abx, aby = plan[b, 0] - plan[a, 0], plan[b, 1] - plan[a, 1]
+        bcx, bcy = plan[c, 0] - plan[b, 0], plan[c, 1] - plan[b, 1]
+        cax, cay = plan[a, 0] - plan[c, 0], plan[a, 1] - plan[c, 1]
+        ab, bc, ca = abx * abx + aby * aby, bcx * bcx + bcy * bcy, cax * cax + cay * cay
+        nearest[a] = min(nearest[a], ab, ca)
+        nearest[b] = min(nearest[b], ab, bc)
+        nearest[c] = min(nearest[c], bc, ca)
+        longest[face] = max(ab, bc, ca)
+        doubled[face] = abs(abx * bcy - aby * bcx)

@@ -39,7 +39,7 @@ def errors_by_level(pyramid: Pyramid, points: FloatArray) -> Iterator[FloatArray
     ids = pyramid._ids_by_level(0)
     near = _faces_near(pyramid, ids, points)
     lone = _lone_vertices(pyramid)
-    for level, coefficients in pyramid._coefficients(ids):
+    for level, coefficients in pyramid._coefficients(ids, slice(1)):  # of heights alone
         corners = near.pop().ravel()
         vertices = np.concatenate([corners, np.searchsorted(ids[level], lone)])
         used, places = np.unique(vertices, return_inverse=True)

@@ -240,9 +240,6 @@ class _Analysis:
     def run(self) -> Pyramid:
         """Take steps until a rule says stop."""
         self._report(0.0)
-        if self._partition_row.needs_upright:
-            build_connectivity(self._faces, self._mesh.n_vertices)  # refuses what is no manifold
-            self._report(0.0)
         steps = self._surface_steps() if self._is_surface_lifting() else self._steps()
         self._report(1.0)
         pyramid = Pyramid(

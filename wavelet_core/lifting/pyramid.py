@@ -513,9 +513,11 @@ class Pyramid:
             by_level[level] = integrals
         return by_level
 
-    def _coefficients(self, ids: dict[int, NDArray[np.int32]]) -> Iterator[tuple[int, FloatArray]]:
+    def _coefficients(
+        self, ids: dict[int, NDArray[np.int32]], channels: slice = slice(None)
+    ) -> Iterator[tuple[int, FloatArray]]:
         """Scaling coefficients from level 0 up; ids are looked at where vertices are locked."""
-        coefficients = self.coarse
+        coefficients = self.coarse[:, channels]
         yield 0, coefficients
         integrals = self._integrals_by_level(0) if UPDATES[self.update].uses_integrals else {}
         for level, step in enumerate(self.steps):
@@ -523,7 +525,7 @@ class Pyramid:
             even = even_positions(step.odd, n_fine)
             coefficients = synthesise_level(
                 coefficients,
-                step.details,
+                step.details[:, channels],
                 step.odd,
                 even,
                 step.prediction(len(even)),

@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 
 from .._kernels._jit import run_in_ranges
 from .._kernels.update import predict_rows
+from .._threads import put_rows
 from .._validate import FloatArray, are_equal, counted, owned
 from .update import UPDATES, Support, apply_ring_means, coarse_integrals, update_changes
 
@@ -167,6 +168,6 @@ def synthesise_level(
         support = Support(prediction, integrals[odd], coarser, locked[even])
         coarse = coarse - update_changes(method, support, details)  # Eq. 32
     fine = np.empty((len(odd) + len(even), coarse.shape[1]))
-    fine[even] = coarse
-    fine[odd] = details + predicted(prediction, coarse)  # Eq. 33
+    put_rows(fine, even, coarse)
+    put_rows(fine, odd, details + predicted(prediction, coarse))  # Eq. 33
     return fine

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from .._kernels.geometry import measure_faces
+from .._threads import run_in_blocks
 from .._validate import FloatArray, IntArray
 from ..errors import MeshError, OptionError
 
@@ -56,25 +58,22 @@ def gaps_of(plan: FloatArray, faces: IntArray) -> PointGaps:
     towns with canals, the water.
     """
     nearest = np.full(len(plan), np.inf)
-    longest, areas = np.empty(len(faces)), np.empty(len(faces))
+    longest, doubled = np.empty(len(faces)), np.empty(len(faces))
     for start in range(0, len(faces), _BLOCK):
-        block = faces[start : start + _BLOCK]
-        corners = plan[block]
-        sides = np.roll(corners, -1, axis=1) - corners
-        lengths = np.hypot(sides[..., 0], sides[..., 1])
-        for k in range(3):
-            np.minimum.at(nearest, block[:, k], lengths[:, k])
-            np.minimum.at(nearest, block[:, (k + 1) % 3], lengths[:, k])
-        here = slice(start, start + len(block))
-        longest[here] = lengths.max(axis=1)
-        doubled = sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]
-        areas[here] = np.abs(doubled) / 2
+        stop = min(start + _BLOCK, len(faces))
+        measure_faces(start, stop, plan, faces, nearest, longest, doubled)
+    nearest, longest, areas = np.sqrt(nearest), np.sqrt(longest), doubled / 2
     length = GAP_FACTOR * float(np.percentile(nearest[np.isfinite(nearest)], 95))
     is_dense = longest <= length
     if not is_dense.any():  # a handful of points
         is_dense[:] = True
     is_used = np.zeros(len(plan), dtype=bool)
-    is_used[faces[is_dense]] = True
+
+    def use(start: int, stop: int) -> None:
+        for corner in faces[start:stop].T:
+            is_used[corner[is_dense[start:stop]]] = True
+
+    run_in_blocks(use, len(faces))
     return PointGaps(
         length=length,
         spacing=float(np.sqrt(areas[is_dense].sum() / np.count_nonzero(is_used))),

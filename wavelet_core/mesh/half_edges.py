@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._kernels._jit import run_in_ranges
+from .._kernels.connectivity import MANY_FACES
 from .._kernels.half_edges import HalfEdges, find_outgoing, find_twins
-from .connectivity import stars_of
+from .._threads import run_in_blocks
+from .connectivity import build_connectivity, stars_of
 
 __all__ = ["half_edges_of"]
 
@@ -18,7 +20,7 @@ def half_edges_of(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges,
     Parameters
     ----------
     faces : ndarray of int32, shape (n_faces, 3)
-        Faces of a manifold, all of one orientation.
+        Faces, all of one orientation.
     n_vertices : int
         Number of vertices.
 
@@ -28,8 +30,15 @@ def half_edges_of(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges,
         Topology that the kernels walk and change.
     ndarray of int8, shape (n_vertices,)
         0, 1, or 2 for two and more.
+
+    Raises
+    ------
+    MeshError
+        An edge that more than two faces share, or two faces of opposite orientation.
     """
     indptr, star = stars_of(faces, n_vertices)
+    if np.diff(indptr).max(initial=0) > MANY_FACES:
+        build_connectivity(faces, n_vertices)  # before each face is compared with all others
     mesh = HalfEdges(
         faces.ravel().copy(),
         np.empty(3 * len(faces), dtype=np.int32),
@@ -38,4 +47,21 @@ def half_edges_of(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges,
     run_in_ranges(find_twins, len(faces), indptr, star, mesh)
     n_fans = np.empty(n_vertices, dtype=np.int8)
     run_in_ranges(find_outgoing, n_vertices, indptr, star, mesh, n_fans)
+    if _may_be_no_surface(mesh, n_fans):
+        build_connectivity(faces, n_vertices)
     return mesh, n_fans
+
+
+def _may_be_no_surface(mesh: HalfEdges, n_fans: NDArray[np.int8]) -> bool:
+    """Return whether every ring must be looked at, which takes as long as all else here.
+
+    Of two half-edges from a to b, only one can be the twin of its twin, unless nothing runs back
+    from b to a: then both are open, and there are several fans around a.
+    """
+
+    def are_mutual(start: int, stop: int) -> bool:
+        twin = mesh.twin[start:stop]
+        has_twin = np.flatnonzero(twin >= 0)
+        return bool((mesh.twin[twin[has_twin]] == start + has_twin).all())
+
+    return bool((n_fans > 1).any()) or not all(run_in_blocks(are_mutual, len(mesh.twin)))

@@ -53,24 +53,52 @@ def merge_duplicates(points: FloatArray, rule: str = "lowest") -> Merged:
             given=rule,
             choices=", ".join(_SIGN_OF_RULE),
         )
-    n_points = len(points)
-    order = np.lexsort((points[:, 1], points[:, 0]))
-    x, y = rows_at(points[:, 0], order), rows_at(points[:, 1], order)
-    is_first = np.ones(n_points, dtype=bool)
+    shared = np.flatnonzero(_may_share_place(points))  # few of many, as a rule
+    by_place = np.lexsort(
+        (_SIGN_OF_RULE[rule] * points[shared, 2], points[shared, 1], points[shared, 0])
+    )
+    at = shared[by_place]
+    x, y = points[at, 0], points[at, 1]
+    is_first = np.ones(len(at), dtype=bool)
     is_first[1:] = (x[1:] != x[:-1]) | (y[1:] != y[:-1])
-    is_shared = ~is_first
-    is_shared[:-1] |= ~is_first[1:]
-    shared = np.flatnonzero(is_shared)  # few of many, as a rule, so that z is looked at for few
-    at = order[shared]
-    by_z = np.lexsort((_SIGN_OF_RULE[rule] * points[at, 2], points[at, 1], points[at, 0]))
-    order[shared] = at[by_z]
-    group_of_sorted = np.cumsum(is_first) - 1
-    chosen = order[is_first]
-    kept = np.sort(chosen)
-    position_of_group = np.searchsorted(kept, chosen)
-    representative = np.empty(n_points, dtype=np.int64)
-    representative[order] = position_of_group[group_of_sorted]
-    return Merged(kept, representative)
+    chosen = at[is_first]
+    stays = np.ones(len(points), dtype=bool)
+    stays[shared] = False
+    stays[chosen] = True
+    representative = np.cumsum(stays) - 1
+    representative[at] = representative[chosen][np.cumsum(is_first) - 1]
+    return Merged(np.flatnonzero(stays), representative)
+
+
+def _may_share_place(points: FloatArray) -> NDArray[np.bool_]:
+    """Return which points have the x and y of another, and perhaps a few that have not.
+
+    One number is sorted for each point, which takes a fraction of the time of sorting by x and y;
+    that two places have the same number is possible, but hardly ever happens.
+    """
+    number = np.empty(len(points), dtype=np.uint64)
+
+    def mix(start: int, stop: int) -> None:
+        plan = points[start:stop, :2] + 0.0  # both zeros are one place
+        x, y = np.ascontiguousarray(plan.T).view(np.uint64)
+        mixed = (x ^ (x >> np.uint64(32))) * np.uint64(0x9E3779B97F4A7C15)
+        mixed = (mixed ^ (mixed >> np.uint64(29)) ^ y) * np.uint64(0xBF58476D1CE4E5B9)
+        number[start:stop] = mixed ^ (mixed >> np.uint64(32))
+
+    run_in_blocks(mix, len(points))
+    ascending = np.sort(number)
+    several = distinct(ascending[1:][ascending[1:] == ascending[:-1]])
+    found = np.zeros(len(points), dtype=bool)
+    if len(several) == 0:
+        return found
+
+    def find(start: int, stop: int) -> None:
+        place = np.searchsorted(several, number[start:stop])
+        nearest = several[np.minimum(place, len(several) - 1)]
+        found[start:stop] = nearest == number[start:stop]
+
+    run_in_blocks(find, len(points))
+    return found
 
 
 def delaunay_faces(plan: FloatArray, edges: IntArray | None = None) -> IntArray:
@@ -145,9 +173,25 @@ def _cdt_faces(pythoncdt: Any, plan: FloatArray, edges: IntArray | None) -> IntA
             raise MeshError(
                 f"constraint edges cannot be inserted ({error}); split them where they cross."
             ) from error
-    triangulation.erase_super_triangle()
-    triangles = triangulation.triangles_array(copy=False)
-    return np.ascontiguousarray(triangles["vertices"], dtype=np.int64)
+        triangulation.erase_super_triangle()
+        faces = triangulation.triangles_array(copy=False)["vertices"]
+        return np.ascontiguousarray(faces, dtype=np.int64)
+    return _without_super_triangle(triangulation.triangles_array(copy=False)["vertices"])
+
+
+def _without_super_triangle(faces: NDArray[np.integer]) -> IntArray:
+    """Return the faces without those of the first three vertices, which are then left out.
+
+    The library does that as well, but renumbers the neighbours of all faces too: a fifth of its
+    time.
+    """
+
+    def rest(start: int, stop: int) -> IntArray:
+        block = faces[start:stop].astype(np.int64)
+        own: IntArray = block[(block >= 3).all(axis=1)] - 3
+        return own
+
+    return np.concatenate([np.empty((0, 3), np.int64), *run_in_blocks(rest, len(faces))])
 
 
 def _checked_faces(centred: FloatArray) -> IntArray:

@@ -37,7 +37,7 @@ from .._kernels.surface_points import (
     sum_over_stars,
     update_heights,
 )
-from .._threads import centre_of, rows_at
+from .._threads import centre_of, less, rows_at
 from .._validate import FloatArray, frozen
 from ..mesh.half_edges import half_edges_of
 from ..mesh.location import cover_of
@@ -99,6 +99,11 @@ class SurfaceLevel:
     outline_tolerance : float
         How far input vertices of the outline may lie from it, in the unit of x and y; with 0 an
         outline vertex goes only where the outline runs straight.
+
+    Raises
+    ------
+    MeshError
+        The faces are no manifold.
     """
 
     #: Whether the removed vertices are kept, face by face, and the errors at them.
@@ -119,8 +124,11 @@ class SurfaceLevel:
         least_error = NEGLIGIBLE_ERROR * float(extent[0])
         self._least_limit = least_error * least_error  # inf where ** would overflow
         self._cost_limit = 0.0
-        self._set_up(plan - centre, heights - self._z_origin, faces, locked, with_update,
-                     outline_tolerance, HEIGHT_STEP * float(np.abs(heights).max()))  # fmt: skip
+        height_step = HEIGHT_STEP * float(max(heights.max(), -heights.min()))
+        self._set_up(
+            less(plan, centre), less(heights, self._z_origin), faces, locked, with_update,
+            outline_tolerance, height_step,
+        )  # fmt: skip
 
     def _set_up(
         self,

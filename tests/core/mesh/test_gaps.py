@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 
 from wavelet_core import MeshError, OptionError, TriangleMesh, analyse
+from wavelet_core._kernels._jit import engine
 from wavelet_core.accuracy.level_errors import level_errors
-from wavelet_core.mesh.gaps import faces_within, gaps_of
+from wavelet_core.mesh.gaps import GAP_FACTOR, faces_within, gaps_of
 from wavelet_core.mesh.triangulation import delaunay_faces
 
 
@@ -65,6 +67,30 @@ def test_the_length_of_a_gap_comes_from_the_spacing():
     assert gaps_of(7 * plan, faces) == pytest.approx(
         (7 * gaps.length, 7 * gaps.spacing, gaps.share)
     )
+
+
+def test_the_spacing_is_that_of_the_nearest_neighbours():
+    """Against a tree of all points, and for each engine."""
+    plan = np.random.default_rng(6).normal(size=(3000, 2))
+    faces = delaunay_faces(plan)
+    nearest = cKDTree(plan).query(plan, k=2)[0][:, 1]
+    a, b, c = plan[faces].swapaxes(0, 1)
+    longest = np.max([np.linalg.norm(p - q, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
+    areas = np.abs(np.linalg.det(np.stack([b - a, c - a], axis=1))) / 2
+    length = GAP_FACTOR * np.percentile(nearest, 95)
+    is_dense = longest <= length
+    n_used = len(np.unique(faces[is_dense]))
+    expected = (
+        length,
+        np.sqrt(areas[is_dense].sum() / n_used),
+        areas[longest > 2 * length].sum() / areas.sum(),
+    )
+    found = []
+    for name in ("loops", "arrays"):
+        with engine(name):
+            found.append(gaps_of(plan, faces))
+    assert found[0] == pytest.approx(expected)
+    assert found[0] == found[1] == gaps_of(plan, faces)
 
 
 @pytest.mark.parametrize("max_edge", [0, -1, float("nan")])

@@ -7,6 +7,7 @@ from helpers_meshes import grid_with_holes, random_delaunay
 
 from wavelet_core import MeshError, TriangleMesh, analyse, synthetic
 from wavelet_core._kernels._jit import engine
+from wavelet_core.mesh import triangulation as triangulation_module
 from wavelet_core.mesh.triangle_mesh import grid_faces
 from wavelet_core.mesh.triangulation import canonical_faces, merge_duplicates
 
@@ -327,3 +328,35 @@ def test_faces_in_their_one_order_and_merged_points_are_those_of_a_full_sort():
         kept, representative = merge_duplicates(points, rule)
         assert kept.tolist() == sorted(row for _, row in best.values())
         assert [best[x, y][1] for x, y, _ in points] == kept[representative].tolist()
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_points_of_one_place_are_found_whatever_their_share(share):
+    """Both zeros are one place; places that only look alike in one coordinate are not."""
+    rng = np.random.default_rng(8)
+    points = rng.normal(size=(70_000, 3))  # more than a block
+    points[:, 0] = np.round(points[:, 0], 2)
+    doubled = rng.random(len(points)) < share
+    points[doubled, :2] = np.round(points[doubled, :2], 1)
+    points[:4, :2] = [[0.0, -0.0], [-0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]
+    kept, representative = merge_duplicates(points, "first")
+    _, first, place = np.unique(points[:, :2] + 0.0, axis=0, return_index=True, return_inverse=True)
+    np.testing.assert_array_equal(kept, np.sort(first))
+    np.testing.assert_array_equal(kept[representative], first[place.ravel()])
+    assert representative[0] == representative[1]
+
+
+def test_the_faces_left_out_are_those_of_the_library():
+    pythoncdt = pytest.importorskip("pythoncdt")
+    plan = np.random.default_rng(4).integers(0, 200, (3000, 2)).astype(float)
+    plan = np.unique(plan, axis=0)
+    triangulation = pythoncdt.Triangulation(
+        pythoncdt.VertexInsertionOrder.AUTO,
+        pythoncdt.IntersectingConstraintEdges.NOT_ALLOWED,
+        0.0,
+    )
+    triangulation.insert_vertices(plan)
+    triangulation.erase_super_triangle()
+    expected = triangulation.triangles_array(copy=True)["vertices"]
+    faces = triangulation_module._cdt_faces(pythoncdt, plan, None)
+    np.testing.assert_array_equal(faces, expected)

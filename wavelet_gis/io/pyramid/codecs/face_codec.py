@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import Progress
+from wavelet_core._threads import run_in_blocks
 from wavelet_core.errors import PyramidError
 from wavelet_core.mesh.point_faces import (
     SortedEdges,
@@ -132,8 +133,18 @@ def _answers_by(
     answers = []
     for of_class in range(N_EDGE_CLASSES):
         report(progress, 0.95 + 0.05 * of_class / N_EDGE_CLASSES, _CANCELLED)
-        answers.append(joined[pairs.classes == of_class])
+        answers.append(_of_class(joined, pairs.classes, of_class))
     return tuple(answers), edges.rows()[~is_asked]
+
+
+def _of_class(
+    joined: NDArray[np.uint8], classes: NDArray[np.uint8], of_class: int
+) -> NDArray[np.uint8]:
+    def select(start: int, stop: int) -> NDArray[np.uint8]:
+        here = slice(start, stop)
+        return joined[here][classes[here] == of_class]
+
+    return np.concatenate([joined[:0].ravel(), *run_in_blocks(select, len(joined))])
 
 
 def _edges_from(
