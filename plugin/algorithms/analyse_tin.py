@@ -277,19 +277,25 @@ class AnalyseTin(AnalysisAlgorithm):
             request.transforms,
             request.feedback,
         )
-        inside = request.computed(lambda _: constraints.contains(points.xyz[:, :2]), 0.03, 0.05)
+
+        def place(work: Work) -> tuple[NDArray[np.bool_], bool, NDArray[np.float64]]:
+            inside = constraints.contains(points.xyz[:, :2])
+            is_asked = bool(constraints.breaklines) and inside.any()
+            meets = not is_asked or constraints.meets(points.xyz[inside])
+            return inside, meets, frame.to_local(points.xyz)
+
+        inside, meets, local = request.computed(place, 0.03, 0.05)
         if not inside.any():
             raise QgsProcessingException(
                 tr("No point is inside the clip polygon; check that the layers overlap.")
             )
-        if constraints.breaklines and not constraints.meets(points.xyz[inside]):
+        if not meets:
             raise QgsProcessingException(
                 tr(
                     "No breakline is where the points are; check that the layers overlap, or leave "
                     "the breaklines out."
                 )
             )
-        local = frame.to_local(points.xyz)
 
         def contains(positions: NDArray[np.float64]) -> NDArray[np.bool_]:
             x, y = positions.T

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -82,9 +83,8 @@ def read_points(
                 source.sourceName()
             )
         )
-    xyz: list[tuple[float, float, float]] = []
-    attributes: list[list[float]] = []
-    marks: list[bool] = []
+    # numbers side by side: of lists of millions, the copy alone would hold QGIS up for seconds
+    xyz, attributes, marks = array("d"), array("d"), bytearray()
     for feature in _features(source, feedback):
         geometry = feature.geometry()
         values = feature.attributes()
@@ -92,10 +92,10 @@ def read_points(
         is_marked = mark_index >= 0 and _is_true(values[mark_index])
         for point in geometry.vertices():
             z = _number(feature, values[z_index], z_field) if z_field else point.z()
-            xyz.append((point.x(), point.y(), z))
-            attributes.append(row)
+            xyz.extend((point.x(), point.y(), z))
+            attributes.extend(row)
             marks.append(is_marked)
-    n = len(xyz)
+    n = len(marks)
     return Points(
         np.array(xyz, dtype=np.float64).reshape(n, 3),
         np.array(attributes, dtype=np.float64).reshape(n, len(attribute_indices)),
@@ -120,7 +120,7 @@ def read_triangles(
                 "geometries have Z."
             ).format(source.sourceName())
         )
-    corners = []
+    corners = array("d")
     part: Any  # of a polygon layer, a polygon
     for feature in _features(source, feedback):
         for part in feature.geometry().constParts():
@@ -132,8 +132,9 @@ def read_triangles(
                         "point layer."
                     ).format(source.sourceName(), feature.id())
                 )
-            corners.append([(p.x(), p.y(), p.z()) for p in ring.points()[:3]])
-    return np.array(corners, dtype=np.float64).reshape(len(corners), 3, 3)
+            for point in ring.points()[:3]:
+                corners.extend((point.x(), point.y(), point.z()))
+    return np.array(corners, dtype=np.float64).reshape(-1, 3, 3)
 
 
 def features_in(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .._threads import run_in_blocks
 from .._validate import FloatArray
 from ..mesh.collapse import even_positions, merge_map, merged_faces
 from ..mesh.triangle_mesh import TriangleMesh
@@ -58,6 +59,12 @@ def mesh_spacing(mesh: TriangleMesh) -> float:
 def _spacing(plan: FloatArray, faces: NDArray[np.integer]) -> float:
     if not len(faces):
         return float("nan")
-    corners = plan[faces]
-    sides = corners - corners[:, [1, 2, 0]]
-    return float(np.median(np.hypot(sides[..., 0], sides[..., 1])))
+    lengths = np.empty((len(faces), 3))
+
+    def measure(start: int, stop: int) -> None:
+        corners = plan[faces[start:stop]]
+        sides = corners - corners[:, [1, 2, 0]]
+        np.hypot(sides[..., 0], sides[..., 1], out=lengths[start:stop])
+
+    run_in_blocks(measure, len(faces))
+    return float(np.median(lengths, overwrite_input=True))

@@ -355,6 +355,7 @@ def test_labels_report_while_they_become_rasters_and_sums(cloud_record, monkeypa
         assert seen == sorted(seen)
         assert np.diff(seen).max() < 0.71
         assert len(seen) > 5
+        assert len([f for f in seen if f > 0.6]) > 4  # not the first part alone
         if not isinstance(made, dict):
             np.testing.assert_array_equal(made.values, whole)
             n_cells = np.count_nonzero(whole != 255)

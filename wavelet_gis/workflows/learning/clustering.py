@@ -143,12 +143,12 @@ def cluster_summary(
         ``n_vertices``, ``share`` and ``rms``, the root mean square detail of each level in the
         unit of the input, and ``relative``, that over the one of all vertices.
     """
-    squared = energy_columns(geo, channel, part_of(progress, 0.0, 0.7)) ** 2
+    squared = energy_columns(geo, channel, part_of(progress, 0.0, 0.5)) ** 2
     overall = np.sqrt(squared.mean(axis=0))
     rows = []
     present = np.unique(labels[labels >= 0])
     for k, label in enumerate(present):
-        report(progress, 0.75 + 0.25 * k / len(present))
+        report(progress, 0.5 + 0.1 * k / len(present))
         inside = labels == label
         rms = np.sqrt(squared[inside].mean(axis=0))
         relative = np.divide(rms, overall, out=np.ones_like(rms), where=overall > 0)
@@ -161,7 +161,8 @@ def cluster_summary(
                 "relative": relative.tolist(),
             }
         )
-    return {"spacings": level_spacings(geo.pyramid)[1:].tolist(), "clusters": rows}
+    spacings = level_spacings(geo.pyramid, part_of(progress, 0.6, 1.0))
+    return {"spacings": spacings[1:].tolist(), "clusters": rows}
 
 
 def _standardised(values: NDArray[np.float32]) -> FloatArray:
