@@ -21,7 +21,7 @@ from .errors import OptionError
 __all__ = [
     "THREADS_VARIABLE",
     "centre_of",
-    "less",
+    "minus",
     "n_threads",
     "put_rows",
     "rows_at",
@@ -101,7 +101,7 @@ def put_rows(array: NDArray[Any], places: NDArray[np.integer], rows: NDArray[Any
     run_in_blocks(put, len(places))
 
 
-def less(array: NDArray[np.float64], row: NDArray[np.float64]) -> NDArray[np.float64]:
+def minus(array: NDArray[np.float64], row: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return ``array - row`` for two dimensions."""
     difference = np.empty(array.shape)
 

@@ -8,7 +8,7 @@ from wavelet_core._threads import (
     BLOCK,
     THREADS_VARIABLE,
     centre_of,
-    less,
+    minus,
     put_rows,
     rows_at,
     run_in_blocks,
@@ -69,4 +69,4 @@ def test_rows_are_put_and_taken_from_as_by_numpy():
     expected[places] = rows
     put_rows(array, places, rows)
     np.testing.assert_array_equal(array, expected)
-    np.testing.assert_array_equal(less(rows, rows[7]), rows - rows[7])
+    np.testing.assert_array_equal(minus(rows, rows[7]), rows - rows[7])

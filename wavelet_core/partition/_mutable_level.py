@@ -37,7 +37,7 @@ from .._kernels.surface_points import (
     sum_over_stars,
     update_heights,
 )
-from .._threads import centre_of, less, rows_at
+from .._threads import centre_of, minus, rows_at
 from .._validate import FloatArray, frozen
 from ..mesh.half_edges import half_edges_of
 from ..mesh.location import cover_of
@@ -126,7 +126,7 @@ class SurfaceLevel:
         self._cost_limit = 0.0
         height_step = HEIGHT_STEP * float(max(heights.max(), -heights.min()))
         self._set_up(
-            less(plan, centre), less(heights, self._z_origin), faces, locked, with_update,
+            minus(plan, centre), minus(heights, self._z_origin), faces, locked, with_update,
             outline_tolerance, height_step,
         )  # fmt: skip
 
