@@ -198,6 +198,9 @@ class TerrainWaveletsAlgorithm(QgsProcessingAlgorithm):
         refusal = ""
         try:
             with shown_in(request.feedback, self.in_words), collected() as notes:
+                reason = self.refusal(request)  # a model asks none of its steps before they run
+                if reason:
+                    raise QgsProcessingException(reason)
                 results = self.work(request)
         except Cancelled:
             pass

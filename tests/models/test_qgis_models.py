@@ -221,6 +221,24 @@ def test_point_cloud_to_contours(run_model, tmp_path):
         assert np.abs(x - 700000 - 20 * (feature["elevation"] - 100)).max() < 4
 
 
+def test_a_step_that_cannot_be_meant_is_refused_without_a_traceback(provider, tmp_path):
+    """QGIS asks a model's steps nothing before they run."""
+    pytest.importorskip("laspy")
+    from qgis.core import QgsProcessingContext, QgsProcessingException
+
+    model, log = provider.algorithm("point_cloud_to_contours").create(), Log()
+    parameters = {
+        "INPUT": write_las(tmp_path / "points.las", np.random.default_rng(3).random((50, 3))),
+        "CLASSES": "no such thing",
+        "contours": str(tmp_path / "contours.gpkg"),
+    }
+    with pytest.raises(QgsProcessingException) as refused:
+        model.run(parameters, QgsProcessingContext(), log, {}, False)
+    said = [*log.errors, *log.warnings, str(refused.value)]
+    assert all("Traceback" not in line for line in said), said
+    assert "separated by commas, such as 2,9" in said[-1]
+
+
 def test_dem_to_simplified_cog(run_model, dem, tmp_path):
     from osgeo import gdal
 
