@@ -166,10 +166,8 @@ def denoise(
     n_steps += 0 if line is None else STEPS_OF_STRIPES
     before = BEFORE_PYRAMIDS
     if sigma is None or noise_range != 0.0 or local_noise:
-        before, n_steps = (
-            TO_FIND_NOISE,
-            n_steps + ticks_of_noise(mesh.n_vertices, sigma is not None),
-        )
+        before = TO_FIND_NOISE
+        n_steps += ticks_of_noise(mesh.n_vertices, sigma is not None)
     meter.begin(0.0, before, n_steps * len(chosen))
     noises = {}
     for name, c in chosen.items():

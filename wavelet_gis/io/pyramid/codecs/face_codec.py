@@ -140,6 +140,8 @@ def _answers_by(
 def _of_class(
     joined: NDArray[np.uint8], classes: NDArray[np.uint8], of_class: int
 ) -> NDArray[np.uint8]:
+    """Return the answers to the questions of one class, in the order of the points."""
+
     def select(start: int, stop: int) -> NDArray[np.uint8]:
         here = slice(start, stop)
         return joined[here][classes[here] == of_class]
