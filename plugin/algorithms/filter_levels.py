@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from ..ui.dependencies import Package
 
 #: Part of the bar in which a pyramid is read before its noise is removed, which takes far longer.
-READING_BEFORE_DENOISING = 0.06
+READING_BEFORE_DENOISING = 0.1
 
 
 class FilterLevels(PyramidAlgorithm):
