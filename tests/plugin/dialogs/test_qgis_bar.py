@@ -1,5 +1,6 @@
 """The bar moves at least every second, and never back, where parts of the work are long."""
 
+from importlib import import_module
 from itertools import pairwise
 
 import numpy as np
@@ -60,6 +61,27 @@ class TestReadingAPyramid:
         moments = np.arange(1.1, 54.0, 0.7)
         reports = list(zip(moments, np.interp(moments, *zip(*ends, strict=True)), strict=True))
         assert longest_rest(width, reports, 54) <= 1.0
+
+
+@pytest.mark.parametrize("parts", ["DENOISED", "DENOISED_AND_WRITTEN"])
+def test_removing_noise_has_the_bar_that_its_time_takes(qgis, parts):
+    """It stood for 3.2 s near its end: nine minutes of ten had two thirds of the bar.
+
+    Seconds are those of four million cells: finding the noise, four pyramids, filters for all
+    vertices, and what they take out.
+    """
+    from terrain_wavelets.plugin.algorithms import filter_levels
+
+    denoise = import_module("wavelet_core.filtering.denoise")
+    find, of_vertices = denoise.TO_FIND_NOISE, denoise.TIME_OF_VERTICES["compiled"]
+    pyramid = (1.0 - find) / (4 + of_vertices)
+    shares = [find, 4 * pyramid, denoise.OF_BANK * of_vertices * pyramid]
+    ends = np.cumsum([0, 85, 200, 85, 91])
+    moments = np.arange(0.0, ends[-1], 1.5)
+    reports = np.interp(moments, ends, [0.0, *np.cumsum(shares), 1.0])
+    width = getattr(filter_levels, parts)[0] - filter_levels.READING_BEFORE_DENOISING
+    reports = list(zip(moments, reports, strict=True))
+    assert longest_rest(width, reports, int(ends[-1])) <= 1.0
 
 
 def test_laying_lines_never_moves_the_bar_back(run, tmp_path, monkeypatch):
