@@ -48,6 +48,10 @@ if TYPE_CHECKING:
     from ..qgis_io.background import Work
 
 
+#: Parts of the bar: until when points are placed, and lines laid on them; reading goes before.
+PLACED_BY, LAID_BY = 0.07, 0.15
+
+
 class AnalyseTin(AnalysisAlgorithm):
     """Vector layer to pyramid."""
 
@@ -258,7 +262,7 @@ class AnalyseTin(AnalysisAlgorithm):
         from wavelet_gis.workflows.lines.constraints import Constraints, laid, locked_vertices
 
         from ..qgis_io.constraints import read_constraints
-        from ..qgis_io.vectors import read_points
+        from ..qgis_io.vectors import READ_BY, read_points
 
         request.stage(tr("Reading the points"))
         name, attribute_names = self.source.sourceName(), request.strings("ATTRIBUTES")
@@ -279,12 +283,12 @@ class AnalyseTin(AnalysisAlgorithm):
         )
 
         def place(work: Work) -> tuple[NDArray[np.bool_], bool, NDArray[np.float64]]:
-            inside = constraints.contains(points.xyz[:, :2])
+            inside = constraints.contains(points.xyz[:, :2], work.progress)
             is_asked = bool(constraints.breaklines) and inside.any()
             meets = not is_asked or constraints.meets(points.xyz[inside])
             return inside, meets, frame.to_local(points.xyz)
 
-        inside, meets, local = request.computed(place, 0.03, 0.05)
+        inside, meets, local = request.computed(place, READ_BY, PLACED_BY)
         if not inside.any():
             raise QgsProcessingException(
                 tr("No point is inside the clip polygon; check that the layers overlap.")
@@ -306,12 +310,16 @@ class AnalyseTin(AnalysisAlgorithm):
             [frame.to_local(ring) for ring in constraints.outline],
             contains,
         )
+        begins = PLACED_BY
         if lines.breaklines or lines.outline:
+            begins = LAID_BY
             request.stage(tr("Laying lines on the terrain"))
             tolerance = _first_of(request, "LINE_TOLERANCE", "MAX_ERROR")
             within = None if tolerance is None else tolerance * frame.z_scale
             lines, self.profile = request.computed(
-                lambda work: laid(lines, TriangleMesh.from_points(local), within), 0.05, 0.1
+                lambda work: laid(lines, TriangleMesh.from_points(local), within),
+                PLACED_BY,
+                LAID_BY,
             )
         request.stage(tr("Triangulating {} points").format(int(inside.sum())))
 
@@ -335,7 +343,7 @@ class AnalyseTin(AnalysisAlgorithm):
                 profile=profile,
             )
 
-        return request.computed(triangulate, 0.1, 0.25)
+        return request.computed(triangulate, begins, 0.25)
 
 
 def _first_of(request: Request, *names: str) -> float | None:

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 
     from ..qgis_io.background import Work
 
-#: Part of the bar in which the pyramid is read; the tiles of a million cells take 25 times as long.
-READING = 0.05
+#: Part of the bar in which the pyramid is read. The tiles of a million cells take 25 times as long,
+#: but half as many points are read for longer, and even then the bar has to be seen to move.
+READING = 0.1
 
 
 class WebTerrain(PyramidAlgorithm):

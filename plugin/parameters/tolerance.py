@@ -194,12 +194,12 @@ def _moved(
 ) -> NDArray[np.float64]:
     """Return places in another CRS; NaN where it has none."""
     moved = np.full_like(places, np.nan)
-    for row, (x, y) in enumerate(places.tolist()):
-        if row % CHUNK == 0:
-            require_running(request.feedback)
-        with contextlib.suppress(QgsCsException):
-            point = transform.transform(x, y)
-            moved[row] = point.x(), point.y()
+    for start in range(0, len(places), CHUNK):
+        require_running(request.feedback)
+        for row, (x, y) in enumerate(places[start : start + CHUNK].tolist(), start):
+            with contextlib.suppress(QgsCsException):
+                point = transform.transform(x, y)
+                moved[row] = point.x(), point.y()
     return moved
 
 
@@ -221,7 +221,7 @@ def _set_in_zones(
             shapes.append((value, feature.geometry()))
     n_inside = 0
     for value, geometry in sorted(shapes, key=lambda shape: -shape[0]):  # the strictest last
-        rows = rows_in(geometry, positions)
+        rows = rows_in(geometry, positions, lambda _: not request.feedback.isCanceled())
         limits[rows] = value
         n_inside += len(rows)
     if n_inside == 0:

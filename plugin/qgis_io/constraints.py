@@ -21,6 +21,8 @@ if TYPE_CHECKING:
         QgsProcessingFeedback,
     )
 
+    from wavelet_core.progress import Progress
+
 #: z of a corner by its x and y.
 Heights = dict[tuple[float, float], float]
 
@@ -37,11 +39,16 @@ class Constraints(NamedTuple):
     outline: list[NDArray[np.float64]]
     clip: QgsGeometry | None
 
-    def contains(self, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Return which of ``(m, 2)`` positions are inside the clip polygon."""
+    def contains(
+        self, positions: NDArray[np.float64], progress: Progress | None = None
+    ) -> NDArray[np.bool_]:
+        """Return which of ``(m, 2)`` positions are inside the clip polygon.
+
+        ``progress`` is called with a fraction in [0, 1]; the work stops when it returns False.
+        """
         if self.clip is None:
             return np.ones(len(positions), dtype=bool)
-        return inside(self.clip, positions)
+        return inside(self.clip, positions, progress)
 
     def meets(self, positions: NDArray[np.float64]) -> bool:
         """Return whether a breakline reaches into the rectangle around positions."""

@@ -63,7 +63,8 @@ def labels_inside(
         is_near = (x >= box.xMinimum()) & (x <= box.xMaximum())
         is_near &= (y >= box.yMinimum()) & (y <= box.yMaximum()) & (labels == NOT_KNOWN)
         rows = np.flatnonzero(is_near)
-        labels[rows[inside(geometry, positions[rows, :2])]] = label
+        is_inside = inside(geometry, positions[rows, :2], lambda _: not feedback.isCanceled())
+        labels[rows[is_inside]] = label
     return labels
 
 

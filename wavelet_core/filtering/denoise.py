@@ -21,7 +21,7 @@ from ._bounded import ticks_of_moments
 from ._weighted_sum import ROUNDING, VERTEX_ROUNDS, WeightedSum
 from .gains import channel_index
 from .noise.model import Noise, RangeOption, noise_of, ticks_of_noise
-from .noise.outliers import OUTLIER_PASSES, ROWS_OF_RANKS
+from .noise.outliers import EXPECTED_PASSES, ROWS_OF_RANKS
 from .noise.rounding import FILL_ROUNDS, ROUNDS_OF_SHARE, without_terraces
 from .noise.stripes import NO_LINE, STEPS_OF_STRIPES, check_lines
 from .noise.white import check_sigma, noise_columns, noise_gains
@@ -38,7 +38,7 @@ LEAST_VERTICES = 100
 #: For the progress: the share of what goes before the pyramids, where the noise is known and where
 #: it is to be found; that of the analysis in a pyramid; the time that the details of all vertices
 #: take, in pyramids of the engine, and the share in it of making their filters.
-BEFORE_PYRAMIDS, TO_FIND_NOISE, OF_ANALYSIS, OF_BANK = 0.03, 0.15, 0.85, 0.25
+BEFORE_PYRAMIDS, TO_FIND_NOISE, OF_ANALYSIS, OF_BANK = 0.03, 0.15, 0.85, 0.5
 TIME_OF_VERTICES = {"compiled": 3.2, "arrays": 0.7, "loops": 3.2}
 
 
@@ -162,7 +162,7 @@ def denoise(
         line = np.where(is_locked, NO_LINE, check_lines(lines, mesh.n_vertices))
     columns = np.column_stack([mesh.vertices[:, 2], mesh.attributes])
     meter = Meter(progress, "denoising was cancelled; nothing was kept.")
-    n_steps = OUTLIER_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
+    n_steps = EXPECTED_PASSES * (1 + mesh.n_vertices // ROWS_OF_RANKS)
     n_steps += 0 if line is None else STEPS_OF_STRIPES
     before = BEFORE_PYRAMIDS
     if sigma is None or noise_range != 0.0 or local_noise:

@@ -29,6 +29,10 @@ __all__ = ["NOT_ASKED", "NearPairs", "SortedEdges", "near_pairs", "sorted_edges"
 #: Points whose neighbours are looked for together: a bound on the memory.
 POINTS_AT_ONCE = 1 << 16
 
+#: Share of the time of `near_pairs` after which the nearest points are known: 0.6 of it without a
+#: compiler, 0.8 with one.
+_OF_NEAREST = 0.7
+
 _CANCELLED = "the work on the faces was cancelled; nothing was kept."
 
 
@@ -91,12 +95,12 @@ def near_pairs(
     reach = np.empty(n)
     nearest = np.empty((n, n_nearest), dtype=np.int32)
     for first in range(0, n, POINTS_AT_ONCE):
-        report(progress, 0.05 + 0.4 * first / n, _CANCELLED)
+        report(progress, 0.05 + (_OF_NEAREST - 0.05) * first / n, _CANCELLED)
         here = plan[first : first + POINTS_AT_ONCE]
         _, found = tree.query(here, k=n_nearest + 2, workers=-1)
         run_in_ranges(order_nearest, len(found), first, found, x, y, nearest, reach)
     classes = np.empty((n, n_nearest), dtype=np.uint8)
-    with watched_part(progress, 0.45, 1.0, _CANCELLED):
+    with watched_part(progress, _OF_NEAREST, 1.0, _CANCELLED):
         run_in_ranges(classify_pairs, n, x, y, nearest, reach, classes)
     return NearPairs(nearest, classes)
 

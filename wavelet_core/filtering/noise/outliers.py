@@ -20,6 +20,8 @@ from .rounding import NO_ROUNDING, Rounding
 OUTLIER_DEVIATIONS, OUTLIER_RELIEF, OUTLIER_RELIEF_OF_OUTLINE = 5.0, 1.0, 4.0
 #: Looks for outliers: each sees those that others stood beside.
 OUTLIER_PASSES = 5
+#: Those that most values take, for the progress.
+EXPECTED_PASSES = 2
 #: Vertices whose neighbours are put in order at once.
 ROWS_OF_RANKS = 50_000
 #: Vertices of fewer neighbours, at corners, are none.

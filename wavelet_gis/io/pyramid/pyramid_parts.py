@@ -55,9 +55,11 @@ __all__ = [
     "pyramid_to_parts",
 ]
 
-#: Shares of the time that the parts of a pyramid take, after which its source is there, and
-#: after which its record is, where that was not kept; the faces of points take the rest.
+#: Shares of the time in which the parts of a pyramid are made, after which its source is there,
+#: and after which its record is, where that was not kept; the faces of points take the rest.
 _SHARE_OF_SOURCE, _SHARE_OF_RECORD = 0.2, 0.4
+#: Share of the time in which they are read, after which its source is there.
+_SOURCE_IS_READ = 0.02
 
 
 def pyramid_to_parts(
@@ -161,10 +163,10 @@ def pyramid_from_parts(
     metadata = contents.metadata
     fields = metadata.fields("source")
     check_source(fields)
-    of_source = part_of(progress, 0.0, _SHARE_OF_SOURCE)
+    of_source = part_of(progress, 0.0, _SOURCE_IS_READ)
     origin = origin_from_parts(fields, source_arrays(fields, arrays, of_source))
     frame = LocalFrame.from_dict(metadata.fields("frame"))
-    of_rest = part_of(progress, _SHARE_OF_SOURCE, 1.0)
+    of_rest = part_of(progress, _SOURCE_IS_READ, 1.0)
     if "record" in metadata:
         pyramid = pyramid_from_record(contents, arrays, origin, frame, written, of_rest)
     else:

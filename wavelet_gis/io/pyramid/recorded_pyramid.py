@@ -27,10 +27,10 @@ from wavelet_gis.model.origin import Origin
 __all__ = ["NO_INPUT", "part_with", "pyramid_from_record", "pyramid_of_part"]
 
 #: Of the time in which a pyramid of points is read: its faces.
-_SHARE_OF_FACES = 0.3
+_SHARE_OF_FACES = 0.35
 
 #: Until when it is known whether they are a surface.
-_SHARE_OF_SURFACE = 0.35
+_SHARE_OF_SURFACE = 0.37
 
 NO_INPUT = "the pyramid is described by an input that the file does not hold."
 

@@ -39,7 +39,7 @@ LARGEST_COORDINATE = 2**25
 _CANCELLED = "the work on the faces was cancelled; nothing was kept."
 
 #: Shares of the time after which the edges are sorted, and every pair is answered for.
-_OF_EDGES, _OF_PAIRS = 0.1, 0.7
+_OF_EDGES, _OF_PAIRS = 0.05, 0.75
 
 
 class FaceRecord(NamedTuple):
