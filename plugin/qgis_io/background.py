@@ -61,7 +61,8 @@ class Bar:
     def __init__(self, now: float, width: float = 1.0) -> None:
         self._least = LEAST / max(width, LEAST)
         self._shown, self._reported = 0.0, 0.0
-        self._seen, self._moved = 0.0, now
+        self._seen = 0.0
+        self._moved = now - SILENCE / 2  # what goes before may have shown nothing for a while
         self._began, self._looked, self._heard = now, now, now
 
     def at(self, fraction: float, now: float) -> float:
