@@ -103,7 +103,9 @@ class Bar:
     def _step(self, now: float) -> float:
         """Return what the clock adds where nothing new was seen for a while."""
         is_silent = now - self._heard > LONG_SILENCE
-        ahead = (FAR_AHEAD if is_silent else AHEAD) * (1.0 - self._reported)
+        left = 1.0 - self._reported
+        # early, what is reported says little of what is left, and there is room
+        ahead = (FAR_AHEAD if is_silent else max(AHEAD, FAR_AHEAD * left)) * left
         ahead = max(ahead, STEPS_AHEAD * self._least)
         if self._reported == 0.0:
             ahead = max(ahead, min(FIRST_AHEAD, FIRST_STEPS_AHEAD * self._least))
