@@ -34,6 +34,8 @@ LEAST = 0.001
 #: nothing for so many seconds they may lead by more.
 AHEAD, STEPS_AHEAD = 0.05, 8
 LONG_SILENCE, FAR_AHEAD = 2.0, 0.25
+#: How far, and in narrow parts how many steps, before the work's first word.
+FIRST_AHEAD, FIRST_STEPS_AHEAD = 0.8, 20
 #: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
 #: more, before the first word and after it.
 STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.05, 0.01, 0.0002
@@ -59,7 +61,8 @@ class Bar:
     def __init__(self, now: float, width: float = 1.0) -> None:
         self._least = LEAST / max(width, LEAST)
         self._shown, self._reported = 0.0, 0.0
-        self._seen, self._moved = 0.0, now
+        self._seen = 0.0
+        self._moved = now - SILENCE / 2  # what goes before may have shown nothing for a while
         self._began, self._looked, self._heard = now, now, now
 
     def at(self, fraction: float, now: float) -> float:
@@ -81,7 +84,10 @@ class Bar:
             self._shown += left * min((now - self._looked) / max(remaining, LOOK), 1.0)
         self._looked = now
         if now - self._moved > SILENCE:
-            self._shown += min(self._step(now), STEP_OF_LEFT * left)
+            most = STEP_OF_LEFT * left
+            if self._reported == 0.0 and left > 2.0 * self._least:
+                most = max(most, 1.01 * self._least)
+            self._shown += min(self._step(now), most)
             self._moved = now
         if self._shown - self._seen >= self._least:
             self._seen, self._moved = self._shown, now
@@ -92,6 +98,8 @@ class Bar:
         is_silent = now - self._heard > LONG_SILENCE
         ahead = (FAR_AHEAD if is_silent else AHEAD) * (1.0 - self._reported)
         ahead = max(ahead, STEPS_AHEAD * self._least)
+        if self._reported == 0.0:
+            ahead = max(ahead, min(FIRST_AHEAD, FIRST_STEPS_AHEAD * self._least))
         if self._shown < self._reported + ahead:
             return 1.01 * self._least
         trickle = TRICKLE if self._reported > 0.0 else FIRST_TRICKLE

@@ -23,6 +23,14 @@ def longest_rest(width, reports, seconds):
     return np.diff([*moments, seconds]).max()
 
 
+def test_the_bar_soon_moves_after_steps_that_showed_nothing(qgis):
+    """Between reading points and placing them it stood for 1.2 s: one rest went into another."""
+    from terrain_wavelets.plugin.qgis_io.background import LEAST, Bar
+
+    bar = Bar(0.0, 0.02)
+    assert 0.02 * max(bar.at(0.0, tenth / 10) for tenth in range(7)) >= LEAST
+
+
 class TestReadingAPyramid:
     """Seconds are those of four million cells, and of two million points, on two cores."""
 
