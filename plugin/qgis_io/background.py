@@ -27,6 +27,9 @@ Result = TypeVar("Result")
 #: Seconds between two looks at the button, and those without a step after which the clock makes
 #: one.
 LOOK, SILENCE = 0.1, 0.8
+#: Seconds without a look beyond which the program was held up, as while a computer sleeps: that
+#: time says nothing of the work's pace.
+HELD = 1.0
 #: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): a step.
 LEAST = 0.001
 #: How far, of what a work has left, the clock's steps may lead what was reported, so that some of
@@ -75,6 +78,10 @@ class Bar:
         now : float
             Seconds.
         """
+        held = now - self._looked - HELD
+        if held > 0.0:
+            self._began, self._heard = self._began + held, self._heard + held
+            self._looked += held
         reported = WORK_PART * min(fraction, 1.0)
         if reported > self._reported:
             self._reported, self._heard = reported, now
@@ -96,7 +103,9 @@ class Bar:
     def _step(self, now: float) -> float:
         """Return what the clock adds where nothing new was seen for a while."""
         is_silent = now - self._heard > LONG_SILENCE
-        ahead = (FAR_AHEAD if is_silent else AHEAD) * (1.0 - self._reported)
+        left = 1.0 - self._reported
+        # early, what is reported says little of what is left, and there is room
+        ahead = (FAR_AHEAD if is_silent else max(AHEAD, FAR_AHEAD * left)) * left
         ahead = max(ahead, STEPS_AHEAD * self._least)
         if self._reported == 0.0:
             ahead = max(ahead, min(FIRST_AHEAD, FIRST_STEPS_AHEAD * self._least))
