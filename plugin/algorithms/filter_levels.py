@@ -352,8 +352,8 @@ class FilterLevels(PyramidAlgorithm):
             raise QgsProcessingException(
                 tr("A difference of DEMs needs a pyramid that was made from a DEM.")
             )
-        difference = request.computed(lambda work: filtered.difference(), 0.9, 0.95)
-        crs, report = crs_of(filtered.before), request.progress(0.95)
+        difference = request.computed(lambda work: filtered.difference(), 0.95, 0.98)
+        crs, report = crs_of(filtered.before), request.progress(0.98)
         write_dem(path, difference, crs, request.feedback, report)
         request.finish("DIFFERENCE", path, styles.style_difference)
         return {"DIFFERENCE": path}

@@ -27,6 +27,9 @@ Result = TypeVar("Result")
 #: Seconds between two looks at the button, and those without a step after which the clock makes
 #: one.
 LOOK, SILENCE = 0.1, 0.8
+#: Seconds without a look beyond which the program was held up, as while a computer sleeps: that
+#: time says nothing of the work's pace.
+HELD = 1.0
 #: Part of QGIS's bar below which it shows nothing new (`QgsFeedback.setProgress`): a step.
 LEAST = 0.001
 #: How far, of what a work has left, the clock's steps may lead what was reported, so that some of
@@ -34,6 +37,8 @@ LEAST = 0.001
 #: nothing for so many seconds they may lead by more.
 AHEAD, STEPS_AHEAD = 0.05, 8
 LONG_SILENCE, FAR_AHEAD = 2.0, 0.25
+#: How far, and in narrow parts how many steps, before the work's first word.
+FIRST_AHEAD, FIRST_STEPS_AHEAD = 0.8, 20
 #: Shares of what is left: what a step of the clock may take, and what it adds where it leads by
 #: more, before the first word and after it.
 STEP_OF_LEFT, FIRST_TRICKLE, TRICKLE = 0.05, 0.01, 0.0002
@@ -59,7 +64,8 @@ class Bar:
     def __init__(self, now: float, width: float = 1.0) -> None:
         self._least = LEAST / max(width, LEAST)
         self._shown, self._reported = 0.0, 0.0
-        self._seen, self._moved = 0.0, now
+        self._seen = 0.0
+        self._moved = now - SILENCE / 2  # what goes before may have shown nothing for a while
         self._began, self._looked, self._heard = now, now, now
 
     def at(self, fraction: float, now: float) -> float:
@@ -72,6 +78,10 @@ class Bar:
         now : float
             Seconds.
         """
+        held = now - self._looked - HELD
+        if held > 0.0:
+            self._began, self._heard = self._began + held, self._heard + held
+            self._looked += held
         reported = WORK_PART * min(fraction, 1.0)
         if reported > self._reported:
             self._reported, self._heard = reported, now
@@ -81,7 +91,10 @@ class Bar:
             self._shown += left * min((now - self._looked) / max(remaining, LOOK), 1.0)
         self._looked = now
         if now - self._moved > SILENCE:
-            self._shown += min(self._step(now), STEP_OF_LEFT * left)
+            most = STEP_OF_LEFT * left
+            if self._reported == 0.0 and left > 2.0 * self._least:
+                most = max(most, 1.01 * self._least)
+            self._shown += min(self._step(now), most)
             self._moved = now
         if self._shown - self._seen >= self._least:
             self._seen, self._moved = self._shown, now
@@ -90,8 +103,12 @@ class Bar:
     def _step(self, now: float) -> float:
         """Return what the clock adds where nothing new was seen for a while."""
         is_silent = now - self._heard > LONG_SILENCE
-        ahead = (FAR_AHEAD if is_silent else AHEAD) * (1.0 - self._reported)
+        left = 1.0 - self._reported
+        # early, what is reported says little of what is left, and there is room
+        ahead = (FAR_AHEAD if is_silent else max(AHEAD, FAR_AHEAD * left)) * left
         ahead = max(ahead, STEPS_AHEAD * self._least)
+        if self._reported == 0.0:
+            ahead = max(ahead, min(FIRST_AHEAD, FIRST_STEPS_AHEAD * self._least))
         if self._shown < self._reported + ahead:
             return 1.01 * self._least
         trickle = TRICKLE if self._reported > 0.0 else FIRST_TRICKLE

@@ -23,6 +23,30 @@ def longest_rest(width, reports, seconds):
     return np.diff([*moments, seconds]).max()
 
 
+def test_the_bar_soon_moves_after_steps_that_showed_nothing(qgis):
+    """Between reading points and placing them it stood for 1.2 s: one rest went into another."""
+    from terrain_wavelets.plugin.qgis_io.background import LEAST, Bar
+
+    bar = Bar(0.0, 0.02)
+    assert 0.02 * max(bar.at(0.0, tenth / 10) for tenth in range(7)) >= LEAST
+
+
+def test_a_computer_that_slept_does_not_slow_the_bar(qgis):
+    """Ten minutes of sleep were counted as work, so that what was left seemed to take hours."""
+    from terrain_wavelets.plugin.qgis_io.background import LEAST, Bar
+
+    width, seconds = 0.8, 400
+    bar, seen, moments = Bar(0.0, width), 0.0, []
+    for tenth in range(10 * seconds):
+        second = tenth / 10
+        now = second + (600.0 if second > 60 else 0.0)
+        place = width * bar.at((tenth // 10) / seconds, now)
+        if place - seen >= LEAST:
+            seen = place
+            moments.append(second)
+    assert np.diff([*moments, seconds]).max() <= 1.0
+
+
 class TestReadingAPyramid:
     """Seconds are those of four million cells, and of two million points, on two cores."""
 
