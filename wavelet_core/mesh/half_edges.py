@@ -47,21 +47,29 @@ def half_edges_of(faces: NDArray[np.int32], n_vertices: int) -> tuple[HalfEdges,
     run_in_ranges(find_twins, len(faces), indptr, star, mesh)
     n_fans = np.empty(n_vertices, dtype=np.int8)
     run_in_ranges(find_outgoing, n_vertices, indptr, star, mesh, n_fans)
-    if _may_be_no_surface(mesh, n_fans):
-        build_connectivity(faces, n_vertices)
+    if _is_no_surface(mesh, n_fans):
+        build_connectivity(faces, n_vertices)  # which says where
     return mesh, n_fans
 
 
-def _may_be_no_surface(mesh: HalfEdges, n_fans: NDArray[np.int8]) -> bool:
-    """Return whether every ring must be looked at, which takes as long as all else here.
+def _is_no_surface(mesh: HalfEdges, n_fans: NDArray[np.int8]) -> bool:
+    """Return whether an edge is shared in a way that no surface does.
 
     Of two half-edges from a to b, only one can be the twin of its twin, unless nothing runs back
     from b to a: then both are open, and there are several fans around a.
     """
 
-    def are_mutual(start: int, stop: int) -> bool:
+    def look(start: int, stop: int) -> tuple[bool, NDArray[np.int64]]:
         twin = mesh.twin[start:stop]
-        has_twin = np.flatnonzero(twin >= 0)
-        return bool((mesh.twin[twin[has_twin]] == start + has_twin).all())
+        is_open = twin < 0
+        is_mutual = np.take(mesh.twin, twin, mode="clip") == np.arange(start, stop)
+        return bool((is_mutual | is_open).all()), start + np.flatnonzero(is_open)
 
-    return bool((n_fans > 1).any()) or not all(run_in_blocks(are_mutual, len(mesh.twin)))
+    looks = run_in_blocks(look, len(mesh.twin))
+    if not all(are_mutual for are_mutual, _ in looks):
+        return True
+    half_edge = np.concatenate([np.empty(0, np.int64), *(open_ones for _, open_ones in looks)])
+    half_edge = half_edge[n_fans[mesh.origin[half_edge]] > 1]
+    head = mesh.origin[half_edge - half_edge % 3 + (half_edge + 1) % 3]
+    edges = np.column_stack([mesh.origin[half_edge], head])
+    return len(np.unique(edges, axis=0)) < len(edges)
