@@ -127,13 +127,10 @@ def of_noise_by_place(mesh: TriangleMesh) -> float:
 
 TRIALS = (
     Trial(_mutable_level, "CHEAPEST_PART", (2, 4, 8, 16, 32, 64), "RMSE at 2 %", to_size(0.02)),
-    Trial(error_guided, "COST_MARGIN", (1.5, 2.0, 4.0, 8.0), "RMSE at 2 %", to_size(0.02)),
+    Trial(error_guided, "COST_MARGIN", (1.1, 1.5, 2.0, 4.0), "RMSE at 2 %", to_size(0.02)),
     Trial(
-        error_guided, "COST_MARGIN", (1.5, 2.0, 4.0, 8.0), "RMSE x size after 12 levels", of_levels,
-    ),
-    Trial(error_guided, "FAR_FACTOR", (1.0, 2.0, 2.5, 3.0, 4.0), "RMSE at 2 %", to_size(0.02)),
-    Trial(
-        error_guided, "FAR_COST_RATIO", (16.0, 64.0, 256.0, 1024.0), "RMSE at 2 %", to_size(0.02)
+        error_guided, "FULL_SHARE_COST_MARGIN", (1.5, 2.0, 4.0, 8.0),
+        "RMSE x size after 12 levels", of_levels,
     ),
     Trial(
         error_guided, "N_ATTEMPTS", (1, 2, 4, 6, 8), "vertices at a tolerance, with update",

@@ -31,17 +31,18 @@ DEFAULT_LEVELS = 24
 #: 10 % more time.
 COST_RATIO = 8.0
 #: While more than FAR times the target are left, a level may take FAR_FACTOR times the share, and
-#: vertices that cost more: what goes then hardly adds to the error in the end. A factor of 2 takes
-#: 10 % more time for 0.8 % less error on small DEMs, and is 0.5 % worse on one of 9 million cells;
-#: 3 is 1 % worse there, and 2.4 % with a ratio of 256.
+#: vertices that cost more: what goes then hardly adds to the error in the end (within 2 %, for 10
+#: to 25 % less time).
 FAR = 2
-FAR_FACTOR = 2.5
+FAR_FACTOR = 2.0
 FAR_COST_RATIO = 64.0
-#: Costs beyond this multiple of the highest one of a level are not worked out for the next level. A
-#: smaller margin leaves a level fewer candidates; all costs are worked out only where hardly any
-#: are left (LEAST_PROGRESS). With a size, 2 takes 12 % more time for the same, and 8 takes 6 % more
-#: for 0.7 % less error; with the full share, 2 is 1.7 % worse and 8 no better.
-COST_MARGIN = 4.0
+#: Costs beyond this multiple of the highest one of a level are not worked out for the next level,
+#: which needs more choice where it takes its full share. A smaller margin leaves a level fewer
+#: candidates; all costs are worked out only where hardly any are left (LEAST_PROGRESS). A margin of
+#: 1.1 takes 2.6 times as long, 1.5 is 0.7 % worse, and 4 no better; with the full share, 2 is 1.7 %
+#: worse and 8 takes 13 % more time for the same.
+COST_MARGIN = 2.0
+FULL_SHARE_COST_MARGIN = 4.0
 #: With an update and a tolerance, how often a level is tried with half as many vertices. A single
 #: trial leaves 12 % more vertices, four 1 %; eight leave 0.2 % fewer for 2 % more time.
 N_ATTEMPTS = 6
@@ -75,6 +76,11 @@ class SurfaceRules(NamedTuple):
         if self.target_vertices > 0 and n_vertices > FAR * self.target_vertices:
             return min(FAR_FACTOR * self.removal_fraction, 1.0), FAR_COST_RATIO
         return self.removal_fraction, COST_RATIO if self.limits_error else np.inf
+
+    @property
+    def cost_margin(self) -> float:
+        """Up to what multiple of this level's highest cost the next level's are worked out."""
+        return COST_MARGIN if self.limits_error else FULL_SHARE_COST_MARGIN
 
     @property
     def limits_error(self) -> bool:
@@ -230,7 +236,7 @@ def _choose(level: SurfaceLevel, rules: SurfaceRules, cutoff: float) -> _Choice 
         linked = level.linked(odd)
         if len(linked) > 0:
             highest = float(level.costs(linked).max())
-            next_cutoff = COST_MARGIN * highest if highest > 0 else np.inf
+            next_cutoff = rules.cost_margin * highest if highest > 0 else np.inf
             return _Choice(linked, is_flat, next_cutoff)
 
 

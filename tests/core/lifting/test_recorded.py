@@ -12,7 +12,6 @@ from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.errors import PyramidError
 from wavelet_core.lifting import recorded
 from wavelet_core.lifting.recorded import pyramid_of, record_of
-from wavelet_core.partition import error_guided
 from wavelet_core.partition.questions import Answers
 
 ENGINES = ["arrays", *(["compiled"] if HAS_NUMBA else [])]
@@ -92,10 +91,8 @@ def test_an_analysis_takes_the_record_that_a_second_walk_does(name, options, par
 @pytest.mark.parametrize(
     ("options", "expected"), [({}, "d79cd9f1a11a2461"), ({"max_error": 9.0}, "f6f7fa38dadc7dc7")]
 )
-def test_records_are_those_of_the_first_files_of_format_2(name, options, expected, monkeypatch):
+def test_records_are_those_of_the_first_files_of_format_2(name, options, expected):
     """Whoever reads those answers otherwise cannot read the files that are there."""
-    if options:
-        monkeypatch.setattr(error_guided, "COST_MARGIN", 2.0)  # as it was then
     i, j = np.mgrid[:40, :50]
     z = (3 * i * i + 5 * j * j + i * j) % 97 + 2 * i + 40 * ((i // 9 + j // 13) % 3)
     mesh = TriangleMesh.from_grid(z.astype(float), np.arange(50.0), np.arange(40.0))
