@@ -21,12 +21,11 @@ def _blocks(start: int, stop: int) -> Iterator[slice]:
         yield slice(first, min(first + POINTS_AT_ONCE, stop))
 
 
-def order_nearest(start, stop, first, found, x, y, nearest, reach):
-    here = slice(first, first + len(found))
-    squared = (x[found] - x[here][:, None]) ** 2 + (y[found] - y[here][:, None]) ** 2
+def order_nearest(start, stop, points, found, x, y, nearest, reach):
+    squared = (x[found] - x[points][:, None]) ** 2 + (y[found] - y[points][:, None]) ** 2
     order = np.lexsort((found, squared), axis=1)
-    reach[here] = np.take_along_axis(squared, order[:, -1:], axis=1)[:, 0]
-    nearest[here] = np.take_along_axis(found, order, axis=1)[:, 1:-1]
+    reach[points] = np.take_along_axis(squared, order[:, -1:], axis=1)[:, 0]
+    nearest[points] = np.take_along_axis(found, order, axis=1)[:, 1:-1]
 
 
 def classify_pairs(start, stop, x, y, nearest, reach, classes):

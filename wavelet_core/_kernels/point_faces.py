@@ -12,15 +12,15 @@ NOT_ASKED = 255
 CLEAR, TIED = 0.05, 1e-9
 
 
-# found (k, m) int64: of each point from `first` on, the m nearest, itself among them, in any order;
+# found (k, m) int64: of each of points (k,) int32 the m nearest, itself among them, in any order;
 # x, y (n,) float64; nearest (n, m - 2) int32, reach (n,) float64, filled: the others by distance,
 # then by index, without the last one, and the square of that one's distance
 @kernel
-def order_nearest(start, stop, first, found, x, y, nearest, reach):
+def order_nearest(start, stop, points, found, x, y, nearest, reach):
     m = found.shape[1]
     squared, ids = np.empty(m), np.empty(m, np.int64)
     for row in range(start, stop):
-        v = first + row
+        v = points[row]
         for k in range(m):
             u = found[row, k]
             here = (x[u] - x[v]) ** 2 + (y[u] - y[v]) ** 2
@@ -40,6 +40,7 @@ def order_nearest(start, stop, first, found, x, y, nearest, reach):
 def classify_pairs(start, stop, x, y, nearest, reach, classes):
     m = nearest.shape[1]
     offset_x, offset_y, squared = np.empty(m), np.empty(m), np.empty(m)
+    crosses, cotangents = np.empty(m), np.empty(m)
     for v in range(start, stop):
         n_known = 0
         for k in range(m):
@@ -51,21 +52,28 @@ def classify_pairs(start, stop, x, y, nearest, reach, classes):
         for k in range(n_known):
             u = nearest[v, k]
             if v < u or squared[k] >= reach[u]:
-                classes[v, k] = class_of_pair(k, n_known, m, offset_x, offset_y, squared)
+                classes[v, k] = class_of_pair(
+                    k, n_known, m, offset_x, offset_y, squared, crosses, cotangents
+                )  # fmt: skip
 
 
 @inlined
-def class_of_pair(k, n_known, m, offset_x, offset_y, squared):
-    left, right = np.inf, np.inf
-    for c in range(n_known):
+def class_of_pair(k, n_known, m, offset_x, offset_y, squared, crosses, cotangents):
+    for c in range(n_known):  # without a branch, so that several are divided at a time
         cross = offset_x[k] * offset_y[c] - offset_y[k] * offset_x[c]
         inner = squared[c] - (offset_x[k] * offset_x[c] + offset_y[k] * offset_y[c])
-        if cross > 0.0:
-            left = min(left, inner / cross)
-        elif cross < 0.0:
-            right = min(right, inner / -cross)
-        elif inner < 0.0:
-            return 0
+        size = abs(cross)
+        crosses[c] = cross
+        cotangents[c] = inner / (size if size > 0.0 else 1.0)
+    left, right = np.inf, np.inf
+    is_between = False
+    for c in range(n_known):
+        cross, cotangent = crosses[c], cotangents[c]
+        left = min(left, cotangent if cross > 0.0 else np.inf)
+        right = min(right, cotangent if cross < 0.0 else np.inf)
+        is_between |= (cross == 0.0) & (cotangent < 0.0)
+    if is_between:
+        return 0
     total = left + right
     if total == np.inf:
         return 1

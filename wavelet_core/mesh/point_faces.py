@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from .._kernels._jit import run_in_ranges
 from .._kernels.point_faces import (
@@ -17,17 +16,14 @@ from .._kernels.point_faces import (
     gather_spokes,
     group_pairs,
     look_up_pairs,
-    order_nearest,
     sort_groups,
     turn_spokes,
 )
 from .._validate import FloatArray
-from ..progress import Progress, report, watched_part
+from ..progress import Progress, part_of, report, watched_part
+from .nearest import nearest_points
 
 __all__ = ["NOT_ASKED", "NearPairs", "SortedEdges", "near_pairs", "sorted_edges", "triangles_of"]
-
-#: Points whose neighbours are looked for together: a bound on the memory.
-POINTS_AT_ONCE = 1 << 16
 
 #: Share of the time of `near_pairs` after which the nearest points are known: 0.6 of it without a
 #: compiler, 0.8 with one.
@@ -90,15 +86,9 @@ def near_pairs(
         Called with a fraction in [0, 1]; the work stops when it returns False.
     """
     n = len(x)
-    plan = np.column_stack([x, y])
-    tree = cKDTree(plan, balanced_tree=False, compact_nodes=False)
-    reach = np.empty(n)
-    nearest = np.empty((n, n_nearest), dtype=np.int32)
-    for first in range(0, n, POINTS_AT_ONCE):
-        report(progress, 0.05 + (_OF_NEAREST - 0.05) * first / n, _CANCELLED)
-        here = plan[first : first + POINTS_AT_ONCE]
-        _, found = tree.query(here, k=n_nearest + 2, workers=-1)
-        run_in_ranges(order_nearest, len(found), first, found, x, y, nearest, reach)
+    nearest, reach = nearest_points(
+        x, y, n_nearest, _CANCELLED, part_of(progress, 0.0, _OF_NEAREST)
+    )
     classes = np.empty((n, n_nearest), dtype=np.uint8)
     with watched_part(progress, _OF_NEAREST, 1.0, _CANCELLED):
         run_in_ranges(classify_pairs, n, x, y, nearest, reach, classes)
