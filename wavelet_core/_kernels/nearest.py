@@ -1,4 +1,4 @@
-"""Kernels of :mod:`wavelet_core.mesh.nearest`: the nearest of points in square cells."""
+"""Kernels of :mod:`wavelet_core.mesh.point_faces`: the nearest of points in square cells."""
 
 import numpy as np
 

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from wavelet_core._kernels._jit import HAS_NUMBA, engine
 from wavelet_core.errors import Cancelled
-from wavelet_core.mesh.nearest import nearest_points
+from wavelet_core.mesh.point_faces import nearest_points
 
 M = 16
 ENGINES = ("arrays", "loops", *(("compiled",) if HAS_NUMBA else ()))
@@ -29,7 +29,7 @@ def assert_nearest(plan):
     is_clear = squared < reach[:, None]  # of the others it is not said which
     for name in ENGINES:
         with engine(name):
-            found, found_reach = nearest_points(x, y, M, "cancelled")
+            found, found_reach = nearest_points(x, y, M)
         np.testing.assert_array_equal(found_reach, reach)
         np.testing.assert_array_equal(found[is_clear], wanted[is_clear])
 
@@ -73,25 +73,25 @@ def test_points_of_a_kind(name):
 
 @pytest.mark.skipif(not HAS_NUMBA, reason="whole arrays leave all to the tree")
 def test_most_points_are_found_in_cells(monkeypatch):
-    from wavelet_core.mesh import nearest
+    from wavelet_core.mesh import point_faces
 
     asked = []
-    look_up = nearest._look_up_in_tree
+    look_up = point_faces._look_up_in_tree
     monkeypatch.setattr(
-        nearest, "_look_up_in_tree", lambda points, *rest: (asked.append(len(points)),
+        point_faces, "_look_up_in_tree", lambda points, *rest: (asked.append(len(points)),
                                                             look_up(points, *rest))
     )  # fmt: skip
     x, y = np.random.default_rng(3).integers(0, 40_000, (2, 30_000)).astype(float)
     places = np.unique(np.column_stack([x, y]), axis=0)
     x, y = (np.ascontiguousarray(column) for column in places.T)
     with engine("compiled"):
-        nearest_points(x, y, M, "cancelled")
+        nearest_points(x, y, M)
     assert asked[0] < 0.01 * len(x)
 
 
 @pytest.mark.parametrize("name", ENGINES)
-def test_a_cancel_says_what_it_was_told(name):
+def test_a_cancel_stops_it(name):
     plan = np.argwhere(np.ones((20, 20))).astype(float)
     x, y = (np.ascontiguousarray(column) for column in plan.T)
-    with engine(name), pytest.raises(Cancelled, match="no more of it"):
-        nearest_points(x, y, M, "no more of it", lambda share: False)
+    with engine(name), pytest.raises(Cancelled, match="nothing was kept"):
+        nearest_points(x, y, M, lambda share: False)

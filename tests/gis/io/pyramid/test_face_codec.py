@@ -139,7 +139,7 @@ def test_a_point_that_is_joined_to_hundreds(name):
 
 def test_faces_of_many_points_tell_how_far_they_are(monkeypatch):
     """A QGIS without numba showed nothing for 7 s, and heard no cancel, over 500,000 points."""
-    monkeypatch.setattr("wavelet_core.mesh.nearest.POINTS_AT_ONCE", 100)
+    monkeypatch.setattr("wavelet_core.mesh.point_faces.POINTS_AT_ONCE", 100)
     monkeypatch.setattr("wavelet_core._arrays.point_faces.POINTS_AT_ONCE", 100)
     points = scattered(2000)
     faces = faces_of(points)
@@ -154,7 +154,7 @@ def test_faces_of_many_points_tell_how_far_they_are(monkeypatch):
 
 @pytest.mark.parametrize("last", [0, 3, 7])
 def test_work_on_faces_stops(last, monkeypatch):
-    monkeypatch.setattr("wavelet_core.mesh.nearest.POINTS_AT_ONCE", 100)
+    monkeypatch.setattr("wavelet_core.mesh.point_faces.POINTS_AT_ONCE", 100)
     points = scattered()
     faces = faces_of(points)
     record = encode_faces(points, faces)
