@@ -15,7 +15,7 @@ import os
 import sys
 import tempfile
 from pathlib import Path
-from unittest.mock import Mock
+from unittest.mock import Mock, patch
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))
@@ -364,19 +364,23 @@ def toolbox(pictures: Pictures) -> None:
 
 
 def options_page(pictures: Pictures) -> None:
-    """Draw the page of the Processing options, our part open."""
-    from processing.core.ProcessingConfig import ProcessingConfig
+    """Draw the page of the Processing options, our part open, as where two packages are missing."""
     from qgis.PyQt.QtWidgets import QTreeWidget, QTreeWidgetItem
+    from terrain_wavelets.plugin.ui import dependencies, options_page
 
     tree = QTreeWidget()
     tree.setColumnCount(2)
     tree.setHeaderLabels(["Setting", "Value"])
     top = QTreeWidgetItem(tree, ["Terrain Wavelets", ""])
-    for setting in ProcessingConfig.getSettings()["Terrain Wavelets"]:
-        QTreeWidgetItem(top, [setting.description, str(setting.value)])
+    is_hidden = {dependencies.LAZRS, dependencies.CGAL}.intersection
+    with patch.object(dependencies, "missing", lambda packages: sorted(is_hidden(packages))):
+        for _, description, value in options_page.rows():
+            QTreeWidgetItem(top, [description, value])
     tree.expandAll()
-    tree.setColumnWidth(0, 560)
-    pictures.keep("options_page", grabbed(tree, 1150, 280))
+    for column in (0, 1):
+        tree.resizeColumnToContents(column)
+    width = sum(map(tree.columnWidth, (0, 1)))
+    pictures.keep("options_page", grabbed(tree, width + 20, 280))
 
 
 def main() -> None:
