@@ -373,7 +373,7 @@ def options_page(pictures: Pictures) -> None:
     tree.setHeaderLabels(["Setting", "Value"])
     top = QTreeWidgetItem(tree, ["Terrain Wavelets", ""])
     is_hidden = {dependencies.LAZRS, dependencies.CGAL}.intersection
-    with patch.object(dependencies, "missing", lambda packages: sorted(is_hidden(packages))):
+    with patch.object(dependencies, "missing", lambda packages: list(is_hidden(packages))):
         for _, description, value in options_page.rows():
             QTreeWidgetItem(top, [description, value])
     tree.expandAll()

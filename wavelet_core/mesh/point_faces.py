@@ -43,7 +43,7 @@ POINTS_A_CELL = 2
 _SORTED, _LOOKED_UP = 0.1, 0.8
 
 #: Share of the time of `near_pairs` after which the nearest points are known: 0.6 of it without a
-#: compiler, 0.8 with one.
+#: compiler, 0.7 with one.
 _OF_NEAREST = 0.7
 
 _CANCELLED = "the work on the faces was cancelled; nothing was kept."
