@@ -41,11 +41,12 @@ __all__ = [
 
 #: Raised by one when a reader of the version before could not read the file. A file that such a
 #: reader can read says so: it has the version before.
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 
 #: The versions that are read. In the first, no pyramid was kept as a record, and what rounding
-#: loses was stored in the place of the input's numbers; in the second, no raster had a palette.
-FORMATS_READ = (1, 2, 3)
+#: loses was stored in the place of the input's numbers; in the second, no raster had a palette; in
+#: the third, a record asked by forecasts alone.
+FORMATS_READ = (1, 2, 3, 4)
 
 FORMAT_NAME = "terrain-wavelets pyramid"
 
