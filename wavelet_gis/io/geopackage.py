@@ -31,6 +31,7 @@ __all__ = [
     "ordinary_columns",
     "register_attributes_table",
     "table_names",
+    "widen_pages",
     "write_styles",
 ]
 
@@ -147,6 +148,24 @@ def create_geopackage(path: str | os.PathLike[str], page_bytes: int = PAGE_BYTES
         connection.executemany("INSERT INTO gpkg_spatial_ref_sys VALUES (?,?,?,?,?,?)", rows)
         connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
         connection.execute(f"PRAGMA user_version = {USER_VERSION}")
+
+
+def widen_pages(path: str | os.PathLike[str]) -> None:
+    """Give a file of small pages large ones, before layers are added to it.
+
+    GDAL from 3.8 on makes spatial indices of which SQLite says, in pages of 512 bytes, that they
+    are too small, and reads nothing.
+
+    Parameters
+    ----------
+    path : path
+        A file that nobody else knows yet.
+    """
+    with open_for_writing(path) as connection:
+        (page_bytes,) = connection.execute("PRAGMA page_size").fetchone()
+        if page_bytes < PAGE_BYTES:
+            connection.execute(f"PRAGMA page_size = {PAGE_BYTES}")
+            connection.execute("VACUUM")
 
 
 def compact_schema(statements: str) -> str:

@@ -50,6 +50,26 @@ def test_without_layers_programs_list_the_tables(alone, validate_gpkg):
         assert pyogrio.read_info(alone, layer=name, force_feature_count=True)["features"] > 0
 
 
+def test_layers_added_to_a_pyramid_without(alone, raster_record, validate_gpkg):
+    import pyogrio
+
+    from wavelet_gis.io.vector.vector_writer import add_layers
+    from wavelet_gis.products.layers import coarse_layers
+
+    before = read_summary(alone)
+    layers = list(coarse_layers(raster_record))
+    add_layers(alone, layers, raster_record.system)
+    validate_gpkg(alone)
+    name, box = layers[0].name, pyogrio.read_info(alone, layer=layers[0].name)["total_bounds"]
+    found = pyogrio.raw.read(alone, layer=name, bbox=tuple(box))[2]
+    assert len(found) == len(layers[0].geometry)  # by the index, which SQLite must be able to read
+    with closing(sqlite3.connect(alone)) as connection, connection:
+        styled = connection.execute("SELECT f_table_name FROM layer_styles").fetchall()
+    assert styled == [(layer.name,) for layer in layers]
+    assert read_summary(alone) == before
+    assert read_pyramid(alone).pyramid.faces.tobytes() == raster_record.pyramid.faces.tobytes()
+
+
 def test_styles_are_added_to_those_there(tmp_path, validate_gpkg):
     create_geopackage(tmp_path / "a.gpkg")
     write_styles(tmp_path / "a.gpkg", [("one", "One", "<qgis/>", "first")])
