@@ -11,9 +11,16 @@ from wavelet_gis.io.geopackage import (
     open_for_writing,
     register_attributes_table,
 )
-from wavelet_gis.io.pyramid import listed_pyramid, metadata_tables, pyramid_parts
+from wavelet_gis.io.pyramid import array_tables, listed_pyramid, metadata_tables, pyramid_parts
 from wavelet_gis.io.pyramid.codecs.array_codec import encode_array, header_of
 from wavelet_gis.model.exact_restore import exact_column
+
+#: Every file had them.
+_INDICES = f"""
+{array_tables.INDEX}
+CREATE UNIQUE INDEX metadata_names ON wavelet_metadata (name);
+CREATE UNIQUE INDEX array_names ON wavelet_arrays (name);
+"""
 
 
 def write_format_one(path, geo):
@@ -31,7 +38,7 @@ def write_format_one(path, geo):
         metadata["pyramid"].pop(name, None)
     create_geopackage(path)
     with open_for_writing(path) as connection:
-        connection.executescript(metadata_tables.SCHEMA)
+        connection.executescript(metadata_tables.SCHEMA + _INDICES)
         for table, description in metadata_tables.TABLES.items():
             register_attributes_table(connection, table, description)
         metadata_tables.write_level_rows(connection, geo)

@@ -274,7 +274,7 @@ def _schema(path, rng):
                 f"DROP TABLE {table}",
                 f"CREATE VIEW {table} AS {endless} SELECT i AS id, i AS {column} FROM n",
             ],
-            ["DROP INDEX wavelet_chunks_of_array"],
+            ["DROP INDEX IF EXISTS wavelet_chunks_of_array"],
             [f"{endless} INSERT INTO {table} ({column}) SELECT i FROM n LIMIT 30000"],
             [f"CREATE INDEX extra ON {table} ({column}, abs({column}))"],
         )

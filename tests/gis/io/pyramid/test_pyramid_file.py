@@ -154,6 +154,17 @@ def test_other_designs_list_their_filters(tmp_path):
     assert read_summary(tmp_path / "a.gpkg")["format"]["version"] == 2
 
 
+@pytest.mark.parametrize(("levels", "has_index"), [(3, False), (12, True)])
+def test_chunks_of_many_arrays_have_an_index(levels, has_index, tmp_path):
+    geo = record_of(random_delaunay(200, seed=5), levels=levels, prediction="GLMN")
+    write_pyramid(tmp_path / "a.gpkg", geo, is_alone=True)
+    assert read_pyramid(tmp_path / "a.gpkg").pyramid == geo.pyramid
+    with contextlib.closing(sqlite3.connect(tmp_path / "a.gpkg")) as connection:
+        indices = connection.execute("PRAGMA index_list(wavelet_chunks)").fetchall()
+    assert len(indices) == has_index
+    assert (len(array_names(tmp_path / "a.gpkg")) > 64) == has_index
+
+
 def test_means_that_repeat_come_back_from_a_palette(tmp_path):
     terrain = samples.hills(40, 50)
     thirds = np.rint(100 * terrain / np.ptp(terrain)) / 3.0
