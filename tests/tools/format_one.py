@@ -19,10 +19,10 @@ from wavelet_gis.io.geopackage import (
 from wavelet_gis.io.pyramid import listed_pyramid, metadata_tables, pyramid_parts
 from wavelet_gis.io.pyramid.codecs.array_codec import encode_array, header_of
 from wavelet_gis.io.pyramid.codecs.former_grids import (
-    ESCAPE,
     RELIEF_CLASSES,
-    FormerResiduals,
     former_relief,
+    pass_by_pass,
+    with_escapes,
 )
 from wavelet_gis.io.pyramid.codecs.grid_codec import integers_of
 from wavelet_gis.io.pyramid.codecs.grid_walk import walk, zigzag
@@ -119,22 +119,10 @@ def former_residuals(integers, valid):
         return cells
 
     walk(grid, valid, former_relief, keep, with_errors=False)
-    by_pass = [
-        part[np.argsort(relief, kind="stable")] for part, relief in zip(parts, reliefs, strict=True)
-    ]
-    first = _as_bytes(np.concatenate(by_pass), ())
+    first = pass_by_pass(list(zip(parts, reliefs, strict=True)))
     classes = np.searchsorted(RELIEF_CLASSES, np.concatenate(reliefs), side="right")
     counts = np.bincount(classes, minlength=len(RELIEF_CLASSES) + 1)
     order = np.argsort(classes, kind="stable")
-    second = _as_bytes(np.concatenate(parts)[order], tuple(counts.tolist()))
+    second = with_escapes(np.concatenate(parts)[order], tuple(counts.tolist()))
     n_first, n_second = (len(zlib.compress(one.numbers.tobytes(), 6)) for one in (first, second))
     return first if n_first <= n_second else second
-
-
-def _as_bytes(residuals, classes):
-    is_beyond = residuals >= ESCAPE
-    if np.count_nonzero(is_beyond) > 0.02 * len(residuals):
-        widest = np.promote_types(np.uint16, np.min_scalar_type(int(residuals.max(initial=0))))
-        return FormerResiduals(residuals.astype(widest), np.empty(0, np.uint64), classes)
-    numbers = np.minimum(residuals, ESCAPE).astype(np.uint8)
-    return FormerResiduals(numbers, residuals[is_beyond], classes)

@@ -11,7 +11,7 @@ from wavelet_core import Progress
 from wavelet_core.progress import part_of, report
 from wavelet_gis._fields import Fields
 from wavelet_gis.io.pyramid.array_tables import StoredArrays
-from wavelet_gis.io.pyramid.codecs.former_grids import FormerResiduals, decode_former_grid
+from wavelet_gis.io.pyramid.codecs.former_grids import FormerResiduals
 from wavelet_gis.io.pyramid.codecs.grid_codec import (
     DIVISORS,
     MOST_LOW_BITS,
@@ -31,7 +31,7 @@ __all__ = ["LOW_BITS", "PALETTE", "check_source", "shrink_source", "source_array
 PALETTE = "palette"
 
 #: What it says of the residuals' low bits: how many those of each class have. Where it says nothing
-#: of them, the residuals are those of formats 2 and 3.
+#: of them, the residuals are in the form of formats 2 and 3.
 LOW_BITS = "low_bits"
 
 #: A raster's numbers, in memory and in the file.
@@ -58,11 +58,15 @@ def shrink_source(
         numbers = integers_of(arrays.pop(_GRID_VALUES))
         report(progress, 0.1)
         residuals = encode_grid(numbers.integers, grid.valid, part_of(progress, 0.1, 1.0))
-        arrays[_RESIDUALS], arrays[_LOW] = residuals.pairs, residuals.low
         arrays[_BEYOND] = residuals.beyond
         source["divisor"] = numbers.divisor
-        source[LOW_BITS] = list(residuals.low_bits)
-        source["relief_weight"] = residuals.relief_weight
+        if isinstance(residuals, FormerResiduals):
+            arrays[_RESIDUALS] = residuals.numbers
+            source["relief_classes"] = list(residuals.classes)
+        else:
+            arrays[_RESIDUALS], arrays[_LOW] = residuals.pairs, residuals.low
+            source[LOW_BITS] = list(residuals.low_bits)
+            source["relief_weight"] = residuals.relief_weight
         if numbers.palette is not None:
             arrays[_PALETTE] = numbers.palette
             source[PALETTE] = len(numbers.palette)
@@ -102,7 +106,7 @@ def _integers(
     if LOW_BITS not in source:
         numbers = arrays.get(_RESIDUALS, n_dimensions=1)
         former = FormerResiduals(numbers, beyond, tuple(source.integers("relief_classes")))
-        return decode_former_grid(former, valid, progress)
+        return decode_grid(former, valid, progress)
     residuals = Residuals(
         arrays.get(_RESIDUALS, "|u1", 1),
         arrays.get(_LOW, "|u1", 1),

@@ -1,4 +1,8 @@
-"""Residuals of rasters as formats 2 and 3 have them: bytes or wider numbers, sorted by relief."""
+"""Residuals of rasters as formats 2 and 3 have them: bytes or wider numbers, sorted by relief.
+
+They are still written where they take fewer bytes: of rasters whose numbers are multiples of many
+or repeat (metres in centimetres, cells of the nearest neighbour), no bits of a residual are noise.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,15 @@ from numpy.typing import NDArray
 from wavelet_core import Progress
 from wavelet_gis.io.pyramid.codecs.grid_walk import from_zigzag, require, walk
 
-__all__ = ["ESCAPE", "RELIEF_CLASSES", "FormerResiduals", "decode_former_grid", "former_relief"]
+__all__ = [
+    "ESCAPE",
+    "RELIEF_CLASSES",
+    "FormerResiduals",
+    "decode_former_grid",
+    "former_relief",
+    "pass_by_pass",
+    "with_escapes",
+]
 
 #: Where classes of relief begin.
 RELIEF_CLASSES = (
@@ -20,6 +32,9 @@ RELIEF_CLASSES = (
 
 #: Stands for a number that a byte does not hold.
 ESCAPE = 255
+
+#: With more of those than this share, numbers are stored whole.
+MOST_BEYOND = 0.02
 
 #: Differences of neighbours from here on are one.
 _MOST_RELIEF = 0xFFFF
@@ -44,6 +59,23 @@ def former_relief(
 ) -> tuple[NDArray[np.uint16]]:
     """Return the relief around cells as these residuals are sorted by it; errors do not count."""
     return (np.minimum(relief, float(_MOST_RELIEF)).astype(np.uint16),)
+
+
+def pass_by_pass(passes: list[tuple[NDArray[np.uint64], NDArray[np.uint16]]]) -> FormerResiduals:
+    """Return residuals, given with the relief around them, in the order of it within each pass."""
+    ordered = [residuals[np.argsort(relief, kind="stable")] for residuals, relief in passes]
+    return with_escapes(np.concatenate(ordered), ())
+
+
+def with_escapes(residuals: NDArray[np.uint64], classes: tuple[int, ...]) -> FormerResiduals:
+    """Return residuals in order as bytes, or as wider numbers where too many are beyond these."""
+    is_beyond = residuals >= ESCAPE
+    if np.count_nonzero(is_beyond) > MOST_BEYOND * len(residuals):
+        widest = np.promote_types(np.uint16, np.min_scalar_type(int(residuals.max(initial=0))))
+        numbers = residuals.astype(widest)  # no bytes, in which ESCAPE would be one of them
+        return FormerResiduals(numbers, np.empty(0, dtype=np.uint64), classes)
+    numbers = np.minimum(residuals, ESCAPE).astype(np.uint8)
+    return FormerResiduals(numbers, residuals[is_beyond], classes)
 
 
 def decode_former_grid(

@@ -13,7 +13,7 @@ other floats by the order of their bits.
 
 from __future__ import annotations
 
-import zlib
+import lzma
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
@@ -25,6 +25,13 @@ from wavelet_core._threads import run_in_blocks
 from wavelet_core._validate import distinct
 from wavelet_core.errors import PyramidError
 from wavelet_core.progress import part_of, report
+from wavelet_gis.io.pyramid.codecs.array_codec import WRITTEN_LZMA_FILTERS
+from wavelet_gis.io.pyramid.codecs.former_grids import (
+    FormerResiduals,
+    decode_former_grid,
+    former_relief,
+    pass_by_pass,
+)
 from wavelet_gis.io.pyramid.codecs.grid_walk import MOST_APART, from_zigzag, require, walk, zigzag
 
 __all__ = [
@@ -61,6 +68,9 @@ _UPPER_BITS = 2
 
 #: Low bits that a residual of 64 bits may have.
 MOST_LOW_BITS = 64 - _UPPER_BITS
+
+#: Residuals of each of the last passes by which the smallest form is found, in so many stretches.
+_SAMPLE, _STRETCHES = 1 << 15, 4
 
 #: Twice the exponent of 1 as a double has it.
 _HALVES_OF_ONE = 2 * 1023
@@ -160,10 +170,25 @@ _Classified = tuple[NDArray[np.uint64], NDArray[np.uint8]]
 
 
 class _Found(NamedTuple):
-    """Residuals of a pass row by row, zigzag, and their classes by each of RELIEF_WEIGHTS."""
+    """Residuals of a pass row by row, zigzag, the relief there as the former had it, and classes.
+
+    There is an array of classes by each of RELIEF_WEIGHTS.
+    """
 
     residuals: NDArray[np.uint64]
+    relief: NDArray[np.uint16]
     classes: tuple[NDArray[np.uint8], ...]
+
+    def sample(self) -> _Found:
+        """Return some stretches of rows, or all of them."""
+        length = len(self.residuals)
+        if length <= _SAMPLE:
+            return self
+        rows = _SAMPLE // _STRETCHES
+        starts = (length - rows) * np.arange(_STRETCHES) // (_STRETCHES - 1)
+        places = (starts[:, np.newaxis] + np.arange(rows)).reshape(-1)
+        classes = tuple(one[places] for one in self.classes)
+        return _Found(self.residuals[places], self.relief[places], classes)
 
     def classified(self, place: int) -> _Classified:
         """Return the residuals and the classes by one of the weights."""
@@ -182,8 +207,8 @@ class _Split(NamedTuple):
 
 def encode_grid(
     integers: NDArray[np.int64], valid: NDArray[np.bool_], progress: Progress | None = None
-) -> Residuals:
-    """Return the residuals of the valid cells, in whichever order takes fewer bytes.
+) -> Residuals | FormerResiduals:
+    """Return the residuals of the valid cells, in whichever order and form takes fewest bytes.
 
     Parameters
     ----------
@@ -206,42 +231,63 @@ def encode_grid(
     grid[valid] = integers
     passes: list[_Found] = []
 
-    def classes(
+    def contexts(
         relief: NDArray[np.float64], wrong: NDArray[np.float64]
-    ) -> tuple[NDArray[np.uint8], ...]:
-        return tuple(_classes(relief, wrong, weight) for weight in RELIEF_WEIGHTS)
+    ) -> tuple[NDArray[Any], ...]:
+        classes = [_classes(relief, wrong, weight) for weight in RELIEF_WEIGHTS]
+        return (*former_relief(relief, wrong), *classes)
 
     def keep(
-        predicted: NDArray[np.int64], cells: NDArray[np.int64], *by_weight: NDArray[np.uint8]
+        predicted: NDArray[np.int64],
+        cells: NDArray[np.int64],
+        relief: NDArray[np.uint16],
+        *classes: NDArray[np.uint8],
     ) -> NDArray[np.int64]:
         with np.errstate(over="ignore"):
-            passes.append(_Found(zigzag(cells - predicted), by_weight))
+            passes.append(_Found(zigzag(cells - predicted), relief, classes))
         return cells
 
-    walk(grid, valid, classes, keep, part_of(progress, 0.0, 0.5))
+    walk(grid, valid, contexts, keep, part_of(progress, 0.0, 0.6))
     del grid
-    sizes = []
-    for place in range(len(RELIEF_WEIGHTS)):  # judged by three quarters of the cells
-        last = _split([found.classified(place) for found in passes[-3:]])
-        n_bytes = len(zlib.compress(last.pairs.tobytes(), 1)) + int(last.n_low.sum()) // 8
-        sizes.append(n_bytes + len(last.beyond))
-        report(progress, 0.6 + 0.1 * place)
-    place = int(np.argmin(sizes))
+    place = _smallest([found.sample() for found in passes[-3:]])
+    report(progress, 0.75)
+    if place == len(RELIEF_WEIGHTS):
+        return pass_by_pass([(found.residuals, found.relief) for found in passes])
     split = _split([found.classified(place) for found in passes])
-    report(progress, 0.85)
+    report(progress, 0.9)
     planes = _planes(split.residuals, split.n_low, [len(found.residuals) for found in passes])
     low = np.concatenate(list(_packed(planes)))
     return Residuals(split.pairs, low, split.beyond, split.low_bits, RELIEF_WEIGHTS[place])
 
 
+def _smallest(passes: list[_Found]) -> int:
+    """Return the place of the weight by which passes take fewest bytes, or one more: the former."""
+    sizes = []
+    for place in range(len(RELIEF_WEIGHTS)):
+        split = _split([found.classified(place) for found in passes])
+        n_bytes = _compressed(split.pairs) + _compressed(split.beyond)
+        sizes.append(n_bytes + int(split.n_low.sum()) // 8)
+    former = pass_by_pass([(found.residuals, found.relief) for found in passes])
+    sizes.append(_compressed(former.numbers) + _compressed(former.beyond))
+    return int(np.argmin(sizes))
+
+
+def _compressed(array: NDArray[Any]) -> int:
+    """Return how many bytes an array takes in the file."""
+    by_byte = array.view(np.uint8).reshape(-1, array.itemsize).T.tobytes()
+    return len(lzma.compress(by_byte, lzma.FORMAT_RAW, filters=WRITTEN_LZMA_FILTERS))
+
+
 def decode_grid(
-    residuals: Residuals, valid: NDArray[np.bool_], progress: Progress | None = None
+    residuals: Residuals | FormerResiduals,
+    valid: NDArray[np.bool_],
+    progress: Progress | None = None,
 ) -> NDArray[np.int64]:
     """Return the integers of the valid cells from their residuals; see `encode_grid`.
 
     Parameters
     ----------
-    residuals : Residuals
+    residuals : Residuals or FormerResiduals
         Of any origin.
     valid : (n_rows, n_columns) bool
     progress : callable, optional
@@ -252,6 +298,8 @@ def decode_grid(
     PyramidError
         When there is not one residual for each valid cell, or it lacks some of its bits.
     """
+    if isinstance(residuals, FormerResiduals):
+        return decode_former_grid(residuals, valid, progress)
     pairs, low, beyond, low_bits, relief_weight = residuals
     n_valid = int(np.count_nonzero(valid))
     require(
