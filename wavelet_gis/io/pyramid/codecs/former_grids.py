@@ -81,21 +81,7 @@ def with_escapes(residuals: NDArray[np.uint64], classes: tuple[int, ...]) -> For
 def decode_former_grid(
     residuals: FormerResiduals, valid: NDArray[np.bool_], progress: Progress | None = None
 ) -> NDArray[np.int64]:
-    """Return the integers of the valid cells from their residuals.
-
-    Parameters
-    ----------
-    residuals : FormerResiduals
-        Of any origin.
-    valid : (n_rows, n_columns) bool
-    progress : callable, optional
-        Called with a fraction in [0, 1]; the work stops when it returns False.
-
-    Raises
-    ------
-    PyramidError
-        When there is not one residual for each valid cell.
-    """
+    """Return the integers of the valid cells from their residuals; see `decode_grid`."""
     numbers, beyond, classes = residuals
     require(
         numbers.shape == (int(np.count_nonzero(valid)),)
