@@ -45,7 +45,7 @@ FORMAT_VERSION = 4
 
 #: The versions that are read. In the first, no pyramid was kept as a record, and what rounding
 #: loses was stored in the place of the input's numbers; in the second, no raster had a palette; in
-#: the third, a record asked by forecasts alone.
+#: the third, a record asked by forecasts alone, and the residuals of rasters had no low bits apart.
 FORMATS_READ = (1, 2, 3, 4)
 
 FORMAT_NAME = "terrain-wavelets pyramid"

@@ -42,6 +42,7 @@ from wavelet_gis.io.pyramid.recorded_pyramid import (
     pyramid_of_part,
 )
 from wavelet_gis.io.pyramid.source_parts import (
+    LOW_BITS,
     PALETTE,
     check_source,
     shrink_source,
@@ -68,7 +69,7 @@ _SOURCE_IS_READ = 0.02
 
 def _version(source: dict[str, Any], recorded: dict[str, Any] | None, is_listed: bool) -> int:
     """Return the first format whose readers know all that the file holds."""
-    if recorded is not None and asks_by_odds(recorded):
+    if LOW_BITS in source or (recorded is not None and asks_by_odds(recorded)):
         return FORMAT_VERSION
     return 3 if is_listed or PALETTE in source else 2
 
