@@ -7,6 +7,7 @@ import pytest
 
 import wavelet_core
 from wavelet_core.lifting.options import refused_pair
+from wavelet_core.partition.questions import N_LEAD_CLASSES, Writer
 
 #: Every filter of the tables, so that a new row is tested as the others are.
 PREDICTIONS = tuple(row.name for row in wavelet_core.PREDICTIONS.values() if not row.in_plan)
@@ -195,3 +196,17 @@ def assert_pyramid_is_consistent(pyramid, mesh):
         assert_step_is_consistent(pyramid, level, fine_to_coarse[level + 1], fine_to_coarse[level])
     if pyramid.update == "minimum_norm" and not unbounded:
         assert_integral_is_constant(pyramid)
+
+
+class ForecastWriter(Writer):
+    """Writes the answers as they were asked before format 4, by forecasts alone."""
+
+    def level(self, bounds):
+        return super().level(bounds)._replace(integral=None)
+
+    def answers(self):
+        answers = super().answers()
+        return answers._replace(
+            levels=np.ascontiguousarray(answers.levels[:, :2]),
+            targets=answers.targets[:N_LEAD_CLASSES],
+        )

@@ -77,10 +77,11 @@ def add_layers(
         When GDAL or SQLite cannot write.
     Cancelled
     """
-    from wavelet_gis.io.geopackage import check_database, check_rows, write_styles
+    from wavelet_gis.io.geopackage import check_database, check_rows, widen_pages, write_styles
     from wavelet_gis.io.read_back import read_back
 
     styles, rows, done = [], {}, 0
+    widen_pages(path)
     for layer in layers:
         require_running(feedback)
         _create(path, layer, wkt)

@@ -44,7 +44,7 @@ GROUPS = {
     "codecs": (
         ("wavelet_gis/io/pyramid/codecs/*.py",),
         ("tests/gis/io/pyramid/test_array_codec.py", "tests/gis/io/pyramid/test_face_codec.py",
-         "tests/gis/io/pyramid/test_grid_codec.py"),
+         "tests/gis/io/pyramid/test_grid_codec.py", "tests/gis/io/pyramid/test_grid_reader.py"),
     ),
 }  # fmt: skip
 SWAPS = {

@@ -33,7 +33,7 @@ if __name__ in ("__main__", "__mp_main__"):
     sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "tools")]
 
 from tools._limits import Trials  # noqa: E402
-from tools.format_one import write_format_one  # noqa: E402
+from tools.format_one import write_format_one, write_former_grid  # noqa: E402
 from tools.pyramid_surgery import STRIP, opened, operate, reseal  # noqa: E402
 
 from wavelet_core.errors import WaveletError  # noqa: E402
@@ -274,7 +274,7 @@ def _schema(path, rng):
                 f"DROP TABLE {table}",
                 f"CREATE VIEW {table} AS {endless} SELECT i AS id, i AS {column} FROM n",
             ],
-            ["DROP INDEX wavelet_chunks_of_array"],
+            ["DROP INDEX IF EXISTS wavelet_chunks_of_array"],
             [f"{endless} INSERT INTO {table} ({column}) SELECT i FROM n LIMIT 30000"],
             [f"CREATE INDEX extra ON {table} ({column}, abs({column}))"],
         )
@@ -352,7 +352,7 @@ def is_original(text, expected):
 
 
 def samples(folder):
-    """Write the files that are mutated: of DEMs, one in parts, a cloud, TINs of two designs."""
+    """Write the files that are mutated: of DEMs, one in parts, one of before, a cloud, TINs."""
     from gis.samples import hills, write_las, write_tif
 
     from wavelet_core import analyse
@@ -382,6 +382,9 @@ def samples(folder):
         listed = path.with_name(f"{path.stem}_1.gpkg")
         write_format_one(listed, geo)
         yield listed, read(listed)
+    path = folder / "former.gpkg"
+    write_former_grid(path, geos[0])
+    yield path, read(path)
     usual = recorded.LEAST_IN_PARTS, recorded.PART_SHARE, recorded.LEAST_IN_PART
     recorded.LEAST_IN_PARTS, recorded.PART_SHARE, recorded.LEAST_IN_PART = 100, 1 / 3, 20
     path = folder / "parts.gpkg"

@@ -27,11 +27,13 @@ class _Limits(NamedTuple):
 
 
 def forecast_collapses(
-    start, stop, todo, mesh, surface, stays, locked, outline, height_step, negligible, best, second
-):
+    start, stop, todo, mesh, surface, stays, locked, outline, height_step, negligible, best, second,
+    n_around,
+):  # fmt: skip
     best[todo], second[todo] = NO_FORECAST, NO_FORECAST
-    for rows, _, targets in _ranked(todo, mesh, surface, stays, locked, outline, height_step):
+    for rows, ring, targets in _ranked(todo, mesh, surface, stays, locked, outline, height_step):
         each, v = np.arange(len(rows)), todo[rows]
+        n_around[v] = min(ring.shape[1], 255)
         for place, errors in ((0, best), (1, second)):
             known = targets.n_legal > place
             squared = targets.own[each, targets.order[:, place]][known]

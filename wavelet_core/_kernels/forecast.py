@@ -1,7 +1,7 @@
 """Kernels of :mod:`wavelet_core.partition.questions`: which collapse looks the best from nearby.
 
 A forecast knows the present heights of a vertex and of its ring, and no more: not the points of the
-faces, nor the integrals. So whoever has the level has its forecasts, before it is known what goes.
+faces. So whoever has the level has its forecasts, before it is known what goes.
 """
 
 import numpy as np
@@ -26,27 +26,29 @@ def workspace(n_channels):
     )  # fmt: skip
 
 
-# The legal targets of v, the best first: order and own_error are filled; returns their number.
+# The legal targets of v, the best first: order and own_error are filled; returns their number, and
+# that of the neighbours.
 @inlined
 def targets_in_order(
     v, origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring, spoke, ring_x,
     ring_y, ring_z, is_barred, order, own_error, distance, cover, cover_weights,
 ):  # fmt: skip
     if stays[v]:
-        return 0
+        return 0, 0
     size, n_sides = walk_ring(v, origin, twin, outgoing, ring, spoke)
     if size < 3 or is_enclosed(size, ring, locked):
-        return 0
+        return 0, size
     diameter = place_ring(v, size, ring, x, y, z, ring_x, ring_y, ring_z)
     rule, along = NONE, 0.0
     if n_sides < size:
         rule, along = outline_rule(v, size, ring, ring_x, ring_y, outline)
         if rule == STAYS:
-            return 0
-    return legal_targets(
+            return 0, size
+    n_legal = legal_targets(
         v, size, rule, along, NONE, is_barred, ring, ring_x, ring_y, ring_z, diameter, z, np.inf,
         height_step, order, own_error, distance, cover, cover_weights,
     )  # fmt: skip
+    return n_legal, size
 
 
 # The upper half of a number in single precision, which keeps the order; bits (1,) uint32 is single
@@ -63,11 +65,12 @@ def coded(squared, negligible, single, bits):
 
 # best, second (n,) uint16 of all vertices, filled for those of todo (k,) int32: the codes of the
 # squared detail that the best legal collapse of each leaves, and of the next best. Up to
-# `negligible` it is nothing.
+# `negligible` it is nothing. n_around (n,) uint8: the number of neighbours.
 @kernel
 def forecast_collapses(
-    start, stop, todo, mesh, surface, stays, locked, outline, height_step, negligible, best, second
-):
+    start, stop, todo, mesh, surface, stays, locked, outline, height_step, negligible, best, second,
+    n_around,
+):  # fmt: skip
     origin, twin, outgoing = mesh.origin, mesh.twin, mesh.outgoing
     x, y, z = surface.x, surface.y, surface.z
     (
@@ -78,11 +81,12 @@ def forecast_collapses(
     bits = single.view(np.uint32)
     for q in range(start, stop):
         v = todo[q]
-        n_legal = targets_in_order(
+        n_legal, size = targets_in_order(
             v, origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring, spoke,
             ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover, cover_weights,
         )  # fmt: skip
         best[v] = second[v] = NO_FORECAST
+        n_around[v] = min(size, 255)
         if n_legal > 0:
             best[v] = coded(own_error[order[0]], negligible, single, bits)
         if n_legal > 1:
@@ -102,7 +106,7 @@ def match_targets(
         cover_weights,
     ) = workspace(z.shape[1])  # fmt: skip
     for q in range(start, stop):
-        n_legal = targets_in_order(
+        n_legal, _ = targets_in_order(
             odd[q], origin, twin, outgoing, x, y, z, stays, locked, outline, height_step, ring,
             spoke, ring_x, ring_y, ring_z, is_barred, order, own_error, distance, cover,
             cover_weights,

@@ -256,6 +256,7 @@ class SurfaceLevel:
             vertices.locked,
             vertices.key,
             np.flatnonzero(vertices.lives).astype(np.int32),
+            vertices.integrals,
             self._height_step,
         )
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import sqlite3
 import time
 from collections.abc import Iterable, Iterator, Mapping
@@ -22,6 +23,7 @@ __all__ = [
     "LayerStyle",
     "check_database",
     "check_rows",
+    "compact_schema",
     "create_geopackage",
     "is_system_fault",
     "open_for_writing",
@@ -29,6 +31,7 @@ __all__ = [
     "ordinary_columns",
     "register_attributes_table",
     "table_names",
+    "widen_pages",
     "write_styles",
 ]
 
@@ -84,16 +87,13 @@ _WGS84 = (
     'AXIS["Latitude",NORTH],AXIS["Longitude",EAST],AUTHORITY["EPSG","4326"]]'
 )
 
+#: With `gpkg_geometry_columns` in every file: the standard asks for it only where there are layers,
+#: but GDAL lists no plain table without it, and QGIS opens none. Small files have the fewest pages
+#: with the tables in this order.
 _SCHEMA = """
 CREATE TABLE gpkg_spatial_ref_sys (
   srs_name TEXT NOT NULL, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT NOT NULL,
   organization_coordsys_id INTEGER NOT NULL, definition TEXT NOT NULL, description TEXT);
-CREATE TABLE gpkg_contents (
-  table_name TEXT NOT NULL PRIMARY KEY, data_type TEXT NOT NULL, identifier TEXT UNIQUE,
-  description TEXT DEFAULT '',
-  last_change DATETIME NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ','now')),
-  min_x DOUBLE, min_y DOUBLE, max_x DOUBLE, max_y DOUBLE, srs_id INTEGER,
-  CONSTRAINT fk_gc_r_srs_id FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id));
 CREATE TABLE gpkg_geometry_columns (
   table_name TEXT NOT NULL, column_name TEXT NOT NULL, geometry_type_name TEXT NOT NULL,
   srs_id INTEGER NOT NULL, z TINYINT NOT NULL, m TINYINT NOT NULL,
@@ -101,6 +101,12 @@ CREATE TABLE gpkg_geometry_columns (
   CONSTRAINT uk_gc_table_name UNIQUE (table_name),
   CONSTRAINT fk_gc_tn FOREIGN KEY (table_name) REFERENCES gpkg_contents(table_name),
   CONSTRAINT fk_gc_srs FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys (srs_id));
+CREATE TABLE gpkg_contents (
+  table_name TEXT NOT NULL PRIMARY KEY, data_type TEXT NOT NULL, identifier TEXT UNIQUE,
+  description TEXT DEFAULT '',
+  last_change DATETIME NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ','now')),
+  min_x DOUBLE, min_y DOUBLE, max_x DOUBLE, max_y DOUBLE, srs_id INTEGER,
+  CONSTRAINT fk_gc_r_srs_id FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id));
 """
 
 _STYLES_SCHEMA = """
@@ -133,15 +139,46 @@ def create_geopackage(path: str | os.PathLike[str], page_bytes: int = PAGE_BYTES
     """
     with open_for_writing(path) as connection:
         connection.execute(f"PRAGMA page_size = {int(page_bytes)}")
-        connection.executescript(_SCHEMA)
+        connection.executescript(compact_schema(_SCHEMA))
         rows = [
             ("Undefined Cartesian SRS", -1, "NONE", -1, "undefined", "undefined Cartesian"),
             ("Undefined geographic SRS", 0, "NONE", 0, "undefined", "undefined geographic"),
-            ("WGS 84 geodetic", 4326, "EPSG", 4326, _WGS84, "longitude and latitude in degrees"),
+            ("WGS 84 geodetic", 4326, "EPSG", 4326, _WGS84, "in degrees"),
         ]
         connection.executemany("INSERT INTO gpkg_spatial_ref_sys VALUES (?,?,?,?,?,?)", rows)
         connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
         connection.execute(f"PRAGMA user_version = {USER_VERSION}")
+
+
+def widen_pages(path: str | os.PathLike[str]) -> None:
+    """Give a file of small pages large ones, before layers are added to it.
+
+    GDAL from 3.8 on makes spatial indices of which SQLite says, in pages of 512 bytes, that they
+    are too small, and reads nothing.
+
+    Parameters
+    ----------
+    path : path
+        A file that nobody else knows yet.
+    """
+    with open_for_writing(path) as connection:
+        (page_bytes,) = connection.execute("PRAGMA page_size").fetchone()
+        if page_bytes < PAGE_BYTES:
+            connection.execute(f"PRAGMA page_size = {PAGE_BYTES}")
+            connection.execute("VACUUM")
+
+
+def compact_schema(statements: str) -> str:
+    """Return CREATE statements without the white space that they can do without.
+
+    A file keeps them as they were written.
+
+    Parameters
+    ----------
+    statements : str
+        With no string of several words, or of brackets and commas with space around them.
+    """
+    return re.sub(r"(?<=[(,;]) | (?=[()])", "", " ".join(statements.split()))
 
 
 @contextmanager

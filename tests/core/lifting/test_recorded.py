@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from helpers import ForecastWriter
 from helpers_meshes import grid_with_holes, random_delaunay
 
 from wavelet_core import TriangleMesh, analyse, synthetic
@@ -87,12 +88,8 @@ def test_an_analysis_takes_the_record_that_a_second_walk_does(name, options, par
         assert record_of(pyramid, mesh) is pyramid.kept_record.record
 
 
-@pytest.mark.parametrize("name", ENGINES)
-@pytest.mark.parametrize(
-    ("options", "expected"), [({}, "d79cd9f1a11a2461"), ({"max_error": 9.0}, "f6f7fa38dadc7dc7")]
-)
-def test_records_are_those_of_the_first_files_of_format_2(name, options, expected):
-    """Whoever reads those answers otherwise cannot read the files that are there."""
+def digest_of_answers(name, options):
+    """Return a digest of the answers of an analysis that the engine called ``name`` has made."""
     i, j = np.mgrid[:40, :50]
     z = (3 * i * i + 5 * j * j + i * j) % 97 + 2 * i + 40 * ((i // 9 + j // 13) % 3)
     mesh = TriangleMesh.from_grid(z.astype(float), np.arange(50.0), np.arange(40.0))
@@ -101,7 +98,37 @@ def test_records_are_those_of_the_first_files_of_format_2(name, options, expecte
         for part in analyse(mesh, record=True, **options).kept_record.record.parts:
             for array in (part.answers.levels, *part.answers.going, *part.answers.targets):
                 digest.update(array.tobytes())
-    assert digest.hexdigest()[:16] == expected
+    return digest.hexdigest()[:16]
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize(
+    ("options", "expected"), [({}, "d79cd9f1a11a2461"), ({"max_error": 9.0}, "f6f7fa38dadc7dc7")]
+)
+def test_records_by_forecasts_are_those_of_the_first_files_of_format_2(
+    name, options, expected, monkeypatch
+):
+    """Whoever reads those answers otherwise cannot read the files that are there."""
+    monkeypatch.setattr(recorded, "Writer", ForecastWriter)
+    assert digest_of_answers(name, options) == expected
+
+
+@pytest.mark.parametrize("name", ENGINES)
+@pytest.mark.parametrize(
+    ("options", "expected"), [({}, "aaa6a6ceaa50e3df"), ({"max_error": 9.0}, "4efae5b9696d0121")]
+)
+def test_records_are_those_of_the_first_files_of_format_4(name, options, expected):
+    assert digest_of_answers(name, options) == expected
+
+
+@pytest.mark.parametrize("name", list(MESHES))
+def test_a_record_by_forecasts_tells_its_pyramid(name, monkeypatch):
+    monkeypatch.setattr(recorded, "Writer", ForecastWriter)
+    pyramid = analyse(MESHES[name], record=True)
+    if pyramid.n_levels:
+        record, again = told(pyramid, MESHES[name])
+        assert record.parts[0].answers.levels.shape[1] == 2
+        assert again == pyramid
 
 
 def test_a_record_of_the_analysis_is_not_taken_for_another_pyramid_or_input():

@@ -31,17 +31,27 @@ from wavelet_gis.io.pyramid.codecs.array_codec import (
     header_of,
 )
 
-__all__ = ["SCHEMA", "Entry", "StoredArrays", "WrittenArrays", "read_entries", "write_arrays"]
+__all__ = [
+    "INDEX",
+    "SCHEMA",
+    "Entry",
+    "StoredArrays",
+    "WrittenArrays",
+    "read_entries",
+    "write_arrays",
+]
 
 SCHEMA = """
-CREATE TABLE wavelet_arrays (
-  id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE, dtype TEXT NOT NULL,
-  shape TEXT NOT NULL, filter TEXT NOT NULL, chunk_rows INTEGER NOT NULL, checksum TEXT);
 CREATE TABLE wavelet_chunks (
-  id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, array_id INTEGER NOT NULL,
-  sequence INTEGER NOT NULL, data BLOB NOT NULL);
-CREATE INDEX wavelet_chunks_of_array ON wavelet_chunks (array_id, sequence);
+  id INTEGER PRIMARY KEY AUTOINCREMENT, array_id INTEGER NOT NULL, sequence INTEGER NOT NULL,
+  data BLOB NOT NULL);
+CREATE TABLE wavelet_arrays (
+  id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL, dtype TEXT NOT NULL,
+  shape TEXT NOT NULL, filter TEXT NOT NULL, chunk_rows INTEGER NOT NULL, checksum TEXT);
 """
+
+#: For a file of many chunks, or of large ones; a few small ones are found without.
+INDEX = "CREATE INDEX wavelet_chunks_of_array ON wavelet_chunks (array_id, sequence);"
 
 #: More arrays than this are no pyramid of ours, which have six a level and some for the source.
 MOST_ARRAYS = 20_000
@@ -205,8 +215,11 @@ class StoredArrays:
         self._sizes = {
             array_id: sizes
             for array_id, *sizes in connection.execute(
-                "SELECT array_id, COUNT(*), SUM(LENGTH(data)), MAX(LENGTH(data)), "
-                "SUM(TYPEOF(data) <> 'blob') FROM wavelet_chunks GROUP BY array_id"
+                # The limit has the lengths taken before the rows are sorted, where there is no
+                # index. The data themselves would be sorted otherwise, at any length.
+                "SELECT array_id, COUNT(*), SUM(n), MAX(n), SUM(is_other) FROM ("
+                "SELECT array_id, LENGTH(data) AS n, TYPEOF(data) <> 'blob' AS is_other "
+                "FROM wavelet_chunks LIMIT -1) GROUP BY array_id"
             )
         }
         stored = sum(n_bytes or 0 for _, n_bytes, _, _ in self._sizes.values())

@@ -41,11 +41,12 @@ __all__ = [
 
 #: Raised by one when a reader of the version before could not read the file. A file that such a
 #: reader can read says so: it has the version before.
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 
 #: The versions that are read. In the first, no pyramid was kept as a record, and what rounding
-#: loses was stored in the place of the input's numbers; in the second, no raster had a palette.
-FORMATS_READ = (1, 2, 3)
+#: loses was stored in the place of the input's numbers; in the second, no raster had a palette; in
+#: the third, a record asked by forecasts alone, and the residuals of rasters had no low bits apart.
+FORMATS_READ = (1, 2, 3, 4)
 
 FORMAT_NAME = "terrain-wavelets pyramid"
 
@@ -57,21 +58,26 @@ MAX_LEVELS = 1000
 
 _MAX_METADATA = 100
 
+#: A small file has the fewest pages with the tables in this order. That no name is there twice is
+#: seen by whoever reads: a constraint would be an index, and a page, each.
 SCHEMA = (
     """
 CREATE TABLE wavelet_metadata (
-  id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, name TEXT NOT NULL UNIQUE, value TEXT NOT NULL);
-CREATE TABLE wavelet_levels (
-  id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, level INTEGER NOT NULL,
-  n_vertices INTEGER NOT NULL, n_faces INTEGER NOT NULL, rmse_coefficients REAL,
-  rmse_surface REAL, max_error_surface REAL, n_uncovered INTEGER);
+  id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL, value TEXT NOT NULL);
 """
     + array_tables.SCHEMA
+    + """
+CREATE TABLE wavelet_levels (
+  id INTEGER PRIMARY KEY AUTOINCREMENT, level INTEGER NOT NULL, n_vertices INTEGER NOT NULL,
+  n_faces INTEGER NOT NULL, rmse_coefficients REAL, rmse_surface REAL, max_error_surface REAL,
+  n_uncovered INTEGER);
+"""
 )
 
+#: With descriptions so short that all four rows of the contents are in one small page.
 TABLES = {
-    "wavelet_metadata": "Format, CRS, parameters and source of the wavelet pyramid (JSON)",
-    "wavelet_levels": "Vertices, triangles and errors of each level of resolution",
+    "wavelet_metadata": "Format, CRS, parameters and source of the pyramid (JSON)",
+    "wavelet_levels": "Vertices, triangles and errors of each level",
     "wavelet_arrays": "Arrays from which every level is synthesised",
     "wavelet_chunks": "Compressed contents of the arrays",
 }
@@ -246,7 +252,10 @@ def _read_texts(connection: sqlite3.Connection) -> dict[str, str]:
     n_characters = 0
     for name, value in connection.execute("SELECT name, value FROM wavelet_metadata"):
         if not isinstance(name, str) or not isinstance(value, str) or name in texts:
-            raise PyramidError(f"the metadata {str(name)[:40]!r} are no text; the file is damaged.")
+            raise PyramidError(
+                f"the metadata {str(name)[:40]!r} are no text, or are there twice; "
+                "the file is damaged."
+            )
         n_characters += len(name) + len(value)
         if n_characters > 2 * LONGEST_JSON or len(texts) == _MAX_METADATA:
             raise PyramidError("more metadata than any pyramid has; the file is damaged.")

@@ -31,12 +31,14 @@ from wavelet_gis.io.geopackage import (
     PAGE_BYTES,
     SMALL_PAGE_BYTES,
     check_database,
+    compact_schema,
     create_geopackage,
     open_for_writing,
     open_untrusted,
     register_attributes_table,
 )
 from wavelet_gis.io.pyramid.array_tables import (
+    INDEX,
     StoredArrays,
     WrittenArrays,
     read_entries,
@@ -85,6 +87,9 @@ SHARE_OF_WRITING = 0.8
 #: Arrays of so few bytes, before they are compressed, are written in small pages.
 _SMALL_BYTES = 4 << 20
 
+#: The chunks of so few small arrays need no index: for each, all rows are looked at.
+_FEW_ARRAYS = 64
+
 _CANCELLED = "writing the pyramid was cancelled; nothing was kept."
 
 
@@ -115,13 +120,14 @@ def write_pyramid(
     """
     share = _SHARE_OF_ENCODING if is_error_guided(geo.pyramid) else _SHARE_OF_LISTING
     metadata, arrays = pyramid_to_parts(geo, part_of(progress, 0.0, share))
-    texts = {name: json.dumps(value, allow_nan=False, sort_keys=True) for name, value in
-             metadata.items()}  # fmt: skip
+    texts = {name: _json(value) for name, value in metadata.items()}
     total = sum(array.nbytes for array in arrays.values())
     is_small = is_alone and total <= _SMALL_BYTES
     create_geopackage(path, SMALL_PAGE_BYTES if is_small else PAGE_BYTES)
     with open_for_writing(path) as connection, _pool() as pool:
-        connection.executescript(SCHEMA)
+        connection.executescript(compact_schema(SCHEMA))
+        if not is_small or len(arrays) > _FEW_ARRAYS:
+            connection.execute(INDEX)
         for table, description in TABLES.items():
             register_attributes_table(connection, table, description)
         write_level_rows(connection, geo)
@@ -130,7 +136,7 @@ def write_pyramid(
         write_arrays(connection, arrays, pool, _share_of(work, of_arrays))
         entries = read_entries(connection, with_checksums=True)
         checksums = checksums_of(texts, read_level_rows(connection), entries)
-        texts["checksums"] = json.dumps(checksums, sort_keys=True)
+        texts["checksums"] = _json(checksums)
         connection.executemany(
             "INSERT INTO wavelet_metadata (name, value) VALUES (?, ?)", texts.items()
         )
@@ -230,6 +236,10 @@ def read_summary(path: str | os.PathLike[str]) -> dict[str, Any]:
         summary = dict(contents.metadata)
         summary["levels"] = [errors._asdict() for errors in contents.levels]
         return summary
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, allow_nan=False, sort_keys=True, separators=(",", ":"))
 
 
 def _share_of(total: int, progress: Progress | None) -> Callable[[int], None]:

@@ -30,7 +30,11 @@ from wavelet_gis.io.pyramid.metadata_tables import (
     FORMAT_VERSION,
     Contents,
 )
-from wavelet_gis.io.pyramid.record_parts import faces_to_parts, record_to_parts
+from wavelet_gis.io.pyramid.record_parts import (
+    asks_by_odds,
+    faces_to_parts,
+    record_to_parts,
+)
 from wavelet_gis.io.pyramid.recorded_pyramid import (
     NO_INPUT,
     part_with,
@@ -38,6 +42,7 @@ from wavelet_gis.io.pyramid.recorded_pyramid import (
     pyramid_of_part,
 )
 from wavelet_gis.io.pyramid.source_parts import (
+    LOW_BITS,
     PALETTE,
     check_source,
     shrink_source,
@@ -60,6 +65,13 @@ __all__ = [
 _SHARE_OF_SOURCE, _SHARE_OF_RECORD = 0.2, 0.4
 #: Share of the time in which they are read, after which its source is there.
 _SOURCE_IS_READ = 0.02
+
+
+def _version(source: dict[str, Any], recorded: dict[str, Any] | None, is_listed: bool) -> int:
+    """Return the first format whose readers know all that the file holds."""
+    if LOW_BITS in source or (recorded is not None and asks_by_odds(recorded)):
+        return FORMAT_VERSION
+    return 3 if is_listed or PALETTE in source else 2
 
 
 def pyramid_to_parts(
@@ -96,11 +108,10 @@ def pyramid_to_parts(
             arrays.update(face_arrays)
     if pyramid.locked is not None:
         arrays["locked"] = pyramid.locked
-    is_new = bool(of_lists) or PALETTE in source
     metadata: dict[str, Any] = {
         "format": {
             "name": FORMAT_NAME,
-            "version": FORMAT_VERSION if is_new else FORMAT_VERSION - 1,
+            "version": _version(source, recorded, bool(of_lists)),
             "checksums": CHECKSUMS,
             "software": f"terrain-wavelets {wavelet_core.__version__}",
         },

@@ -20,6 +20,7 @@ from wavelet_core.lifting.recorded import Frame, Record, RecordPart
 from wavelet_core.mesh.connectivity import build_connectivity
 from wavelet_core.partition.questions import (
     N_GOING_CLASSES,
+    N_LEAD_CLASSES,
     N_TARGET_CLASSES,
     Answers,
 )
@@ -33,6 +34,8 @@ from wavelet_gis.io.pyramid.codecs.face_codec import (
 
 __all__ = [
     "ArraySource",
+    "asks_by_odds",
+    "codes_per_level",
     "faces_from_parts",
     "faces_to_parts",
     "n_parts",
@@ -47,6 +50,10 @@ BEYOND = 15
 _MOST_PARTS = 8
 
 _MOST_STEPS = 1000
+
+#: Codes of each level: without and with that of the integrals.
+CODES_PER_LEVEL = 2, 3
+_WIDTH = "codes_per_level"
 
 #: The arrays of a part that begins at a stored level.
 _STORED = {
@@ -90,11 +97,17 @@ def record_to_parts(record: Record) -> tuple[dict[str, Any], dict[str, NDArray[A
         fields["parts"].append(
             {
                 "levels": answers.levels.ravel().tolist(),
+                _WIDTH: answers.levels.shape[1],
                 "going": [len(of_class) for of_class in answers.going],
                 "targets": [len(of_class) for of_class in answers.targets],
             }
         )
     return fields, arrays
+
+
+def asks_by_odds(fields: dict[str, Any]) -> bool:
+    """Return whether a record is one that no reader before format 4 knows."""
+    return any(part[_WIDTH] != CODES_PER_LEVEL[0] for part in fields["parts"])
 
 
 def faces_to_parts(
@@ -181,6 +194,20 @@ def n_parts(fields: Fields) -> int:
     return count
 
 
+def codes_per_level(described: Fields) -> int:
+    """Return how many codes the levels of a part have; files before format 4 do not say.
+
+    Raises
+    ------
+    PyramidError
+        A number of which no record is.
+    """
+    fewest, most = CODES_PER_LEVEL
+    if _WIDTH not in described:
+        return fewest
+    return described.integer(_WIDTH, fewest, most)
+
+
 def record_from_parts(
     fields: Fields, arrays: ArraySource, n_channels: int, first: int = 0
 ) -> Record:
@@ -234,11 +261,13 @@ _NO_ANSWERS = Answers(np.empty((0, 2), dtype=np.uint16), (), ())
 
 def _answers(described: Fields, arrays: ArraySource, name: str) -> Answers:
     codes = described.integers("levels", 0, NO_FORECAST)
+    n_codes = codes_per_level(described)
     n_going = described.integers("going")
     n_targets = described.integers("targets")
-    if len(codes) % 2 or len(codes) > 2 * _MOST_STEPS:
+    if len(codes) % n_codes or len(codes) > n_codes * _MOST_STEPS:
         raise described.fault("levels of no pyramid")
-    if len(n_going) != N_GOING_CLASSES or len(n_targets) != N_TARGET_CLASSES:
+    n_classes = N_TARGET_CLASSES if n_codes == CODES_PER_LEVEL[1] else N_LEAD_CLASSES
+    if len(n_going) != N_GOING_CLASSES or len(n_targets) != n_classes:
         raise described.fault("classes of no pyramid")
     going = arrays.get(f"{name}/going", "|u1", 1)
     targets = arrays.get(f"{name}/targets", "|u1", 1)
@@ -252,7 +281,7 @@ def _answers(described: Fields, arrays: ArraySource, name: str) -> Answers:
         raise described.fault("targets beyond the others that do not fit")
     places[is_beyond] = beyond
     return Answers(
-        np.array(codes, dtype=np.uint16).reshape(-1, 2),
+        np.array(codes, dtype=np.uint16).reshape(-1, n_codes),
         tuple(np.split(bits, np.cumsum(n_going)[:-1])),
         tuple(np.split(places, np.cumsum(n_targets)[:-1])),
     )

@@ -20,7 +20,12 @@ from wavelet_gis.io.pyramid.described import (
     stop_from,
 )
 from wavelet_gis.io.pyramid.metadata_tables import Contents
-from wavelet_gis.io.pyramid.record_parts import faces_from_parts, n_parts, record_from_parts
+from wavelet_gis.io.pyramid.record_parts import (
+    codes_per_level,
+    faces_from_parts,
+    n_parts,
+    record_from_parts,
+)
 from wavelet_gis.model.dem import cell_plan
 from wavelet_gis.model.origin import Origin
 
@@ -94,7 +99,7 @@ def part_with(contents: Contents, level: int) -> int:
     for index, part in enumerate(record.objects("parts")[: n_parts(record)]):
         if begins >= level:
             found = index
-        begins -= len(part.items_of("levels")) // 2
+        begins -= len(part.items_of("levels")) // codes_per_level(part)
     return found
 
 

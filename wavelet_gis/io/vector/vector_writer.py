@@ -9,7 +9,13 @@ from functools import partial
 
 from wavelet_gis.crs.frame import CoordinateSystem
 from wavelet_gis.errors import CrsWarning, OutputFileError
-from wavelet_gis.io.geopackage import LayerStyle, check_database, check_rows, write_styles
+from wavelet_gis.io.geopackage import (
+    LayerStyle,
+    check_database,
+    check_rows,
+    widen_pages,
+    write_styles,
+)
 from wavelet_gis.io.names import plain_folder
 from wavelet_gis.io.read_back import read_back, room_at
 from wavelet_gis.products.layers import Layer
@@ -45,6 +51,8 @@ def add_layers(
     n_rows: dict[str, int] = {}
     n_features = 0
     crs = _crs_for_gdal(system)
+    if os.path.exists(path):
+        widen_pages(path)
     for layer in layers:
         with plain_folder(path) as name:
             _write_layer(name, layer, crs)

@@ -16,12 +16,58 @@ from wavelet_gis.io.geopackage import (
     table_names,
     write_styles,
 )
-from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary
+from wavelet_gis.io.pyramid.metadata_tables import TABLES
+from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary, write_pyramid
 
 
 def test_an_empty_one_is_valid(tmp_path, validate_gpkg):
     create_geopackage(tmp_path / "a.gpkg")
     validate_gpkg(tmp_path / "a.gpkg")
+
+
+@pytest.fixture
+def alone(raster_record, tmp_path):
+    """Return a small pyramid file to which no layers are to be added."""
+    write_pyramid(tmp_path / "alone.gpkg", raster_record, is_alone=True)
+    return tmp_path / "alone.gpkg"
+
+
+def test_without_layers_little_is_beside_the_chunks(alone):
+    with closing(sqlite3.connect(alone)) as connection:
+        connection.execute("DELETE FROM wavelet_chunks")
+        connection.commit()
+        connection.execute("VACUUM")
+    assert alone.stat().st_size <= 14_848  # 18,944 before; a page is 512
+
+
+def test_without_layers_programs_list_the_tables(alone, validate_gpkg):
+    import pyogrio
+
+    validate_gpkg(alone)
+    # GDAL shows none where there is no gpkg_geometry_columns, which the standard would allow.
+    assert pyogrio.list_layers(alone).tolist() == [[name, None] for name in TABLES]
+    for name in TABLES:
+        assert pyogrio.read_info(alone, layer=name, force_feature_count=True)["features"] > 0
+
+
+def test_layers_added_to_a_pyramid_without(alone, raster_record, validate_gpkg):
+    import pyogrio
+
+    from wavelet_gis.io.vector.vector_writer import add_layers
+    from wavelet_gis.products.layers import coarse_layers
+
+    before = read_summary(alone)
+    layers = list(coarse_layers(raster_record))
+    add_layers(alone, layers, raster_record.system)
+    validate_gpkg(alone)
+    name, box = layers[0].name, pyogrio.read_info(alone, layer=layers[0].name)["total_bounds"]
+    found = pyogrio.raw.read(alone, layer=name, bbox=tuple(box))[2]
+    assert len(found) == len(layers[0].geometry)  # by the index, which SQLite must be able to read
+    with closing(sqlite3.connect(alone)) as connection, connection:
+        styled = connection.execute("SELECT f_table_name FROM layer_styles").fetchall()
+    assert styled == [(layer.name,) for layer in layers]
+    assert read_summary(alone) == before
+    assert read_pyramid(alone).pyramid.faces.tobytes() == raster_record.pyramid.faces.tobytes()
 
 
 def test_styles_are_added_to_those_there(tmp_path, validate_gpkg):

@@ -75,6 +75,23 @@ def replace_array(name, array):
     ]
 
 
+def test_names_that_are_there_twice(damaged):
+    path = damaged(
+        "DROP INDEX IF EXISTS metadata_names",
+        "INSERT INTO wavelet_metadata (name, value) SELECT name, value FROM wavelet_metadata "
+        "WHERE name = 'frame'",
+    )
+    with pytest.raises(PyramidError, match="metadata 'frame' are no text, or are there twice"):
+        read_summary(path)
+    copied = "name, dtype, shape, filter, chunk_rows"
+    path = damaged(
+        "DROP INDEX IF EXISTS array_names",
+        f"INSERT INTO wavelet_arrays ({copied}) SELECT {copied} FROM wavelet_arrays WHERE id = 2",
+    )
+    with pytest.raises(PyramidError, match="another's name"):
+        read_pyramid(path)
+
+
 @pytest.mark.parametrize("table", ["metadata", "levels", "arrays", "chunks"])
 def test_a_missing_table(damaged, table):
     with pytest.raises(InputFileError, match=f"no table wavelet_{table}"):
@@ -97,7 +114,7 @@ def test_a_view_that_poses_as_a_table(damaged):
         "DELETE FROM wavelet_metadata WHERE name = 'format'",
         "UPDATE wavelet_metadata SET value = '{\"name\": \"another\"}' WHERE name = 'format'",
         "UPDATE wavelet_metadata SET value = '[]' WHERE name = 'format'",
-        "UPDATE wavelet_metadata SET value = json_set(value, '$.version', 4) WHERE name = 'format'",
+        "UPDATE wavelet_metadata SET value = json_set(value, '$.version', 5) WHERE name = 'format'",
         "ALTER TABLE wavelet_arrays RENAME COLUMN shape TO form",
         "ALTER TABLE wavelet_levels RENAME COLUMN n_faces TO faces",
     ],
@@ -273,10 +290,12 @@ def test_a_bomb_costs_no_memory(damaged, n_bytes, message):
 
 
 @listed
-def test_a_value_beyond_all_bounds(damaged):
+@pytest.mark.parametrize("index", ["with an index", "without"])
+def test_a_value_beyond_all_bounds(damaged, index):
     path = damaged(
+        "DROP INDEX wavelet_chunks_of_array" if index == "without" else "SELECT 1",
         "UPDATE wavelet_chunks SET data = zeroblob(100000000) WHERE array_id = "
-        "(SELECT id FROM wavelet_arrays WHERE name = 'coarse')"
+        "(SELECT id FROM wavelet_arrays WHERE name = 'coarse')",
     )
     with pytest.raises(PyramidError, match="coarse: a chunk of 100000000 bytes"):
         read_pyramid(path)
@@ -497,10 +516,15 @@ def test_answers_that_tell_no_pyramid(damaged, sound, name, fill):
         {"levels": []},
         {"levels": [1]},
         {"levels": [70000, 5]},
-        {"levels": [0, 0] * 2000},
+        {"levels": [0, 0, 0] * 2000},
+        {"codes_per_level": 1},
+        {"codes_per_level": 2},
+        {"codes_per_level": 4},
+        {"codes_per_level": "3"},
         {"going": [1] * 31},
         {"going": [2**40] * 32},
-        {"targets": [-1] * 8},
+        {"targets": [-1] * 29},
+        {"targets": [0] * 8},
     ],
 )
 def test_records_that_are_none(damaged, sound, change):

@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 from gis import samples
 from gis.samples import write_tif
+from helpers import ForecastWriter
 from helpers_meshes import random_delaunay
 
 from wavelet_core import Cancelled, TriangleMesh, WaveletError, analyse
+from wavelet_core.lifting import recorded
+from wavelet_core.partition.questions import Writer
 from wavelet_core.synthetic import hills
 from wavelet_gis.crs.frame import CoordinateSystem, LocalFrame
 from wavelet_gis.io.pyramid.pyramid_file import (
@@ -151,6 +154,17 @@ def test_other_designs_list_their_filters(tmp_path):
     assert read_summary(tmp_path / "a.gpkg")["format"]["version"] == 2
 
 
+@pytest.mark.parametrize(("levels", "has_index"), [(3, False), (12, True)])
+def test_chunks_of_many_arrays_have_an_index(levels, has_index, tmp_path):
+    geo = record_of(random_delaunay(200, seed=5), levels=levels, prediction="GLMN")
+    write_pyramid(tmp_path / "a.gpkg", geo, is_alone=True)
+    assert read_pyramid(tmp_path / "a.gpkg").pyramid == geo.pyramid
+    with contextlib.closing(sqlite3.connect(tmp_path / "a.gpkg")) as connection:
+        indices = connection.execute("PRAGMA index_list(wavelet_chunks)").fetchall()
+    assert len(indices) == has_index
+    assert (len(array_names(tmp_path / "a.gpkg")) > 64) == has_index
+
+
 def test_means_that_repeat_come_back_from_a_palette(tmp_path):
     terrain = samples.hills(40, 50)
     thirds = np.rint(100 * terrain / np.ptp(terrain)) / 3.0
@@ -159,9 +173,38 @@ def test_means_that_repeat_come_back_from_a_palette(tmp_path):
     geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=3))
     write_pyramid(tmp_path / "a.gpkg", geo)
     assert "source/palette" in array_names(tmp_path / "a.gpkg")
-    assert read_summary(tmp_path / "a.gpkg")["format"]["version"] == 3
+    assert read_summary(tmp_path / "a.gpkg")["format"]["version"] == 4
     assert read_pyramid(tmp_path / "a.gpkg").pyramid == geo.pyramid
     assert read_input(tmp_path / "a.gpkg").restore().values.tobytes() == thirds.tobytes()
+
+
+@pytest.mark.parametrize("part_share", [0.0, 0.25])
+def test_a_file_that_asks_by_forecasts_is_of_format_2_and_read(part_share, tmp_path, monkeypatch):
+    """As all records were before format 4, in one part and in several."""
+    monkeypatch.setattr(recorded, "LEAST_IN_PARTS", 1000)
+    monkeypatch.setattr(recorded, "LEAST_IN_PART", 10)
+    monkeypatch.setattr(recorded, "PART_SHARE", part_share)
+    terrain = open_terrain(write_tif(tmp_path / "a.tif", samples.hills(50, 60).astype("f4")))
+    sizes = {}
+    for name, writer in (("now", Writer), ("before", ForecastWriter)):
+        monkeypatch.setattr(recorded, "Writer", writer)
+        geo = terrain.geo_pyramid(analyse(terrain.mesh, levels=20, record=True))
+        write_pyramid(tmp_path / f"{name}.gpkg", geo)
+        assert read_pyramid(tmp_path / f"{name}.gpkg").pyramid == geo.pyramid
+        for level in (0, 10):
+            part = read_levels(tmp_path / f"{name}.gpkg", level)
+            assert part.pyramid.mesh(level) == geo.pyramid.mesh(level)
+        sizes[name] = sum(len(data) for _, data in chunks_of(tmp_path / f"{name}.gpkg"))
+    assert read_summary(tmp_path / "before.gpkg")["format"]["version"] == 2
+    assert sizes["now"] < 0.98 * sizes["before"]
+
+
+def chunks_of(path):
+    with contextlib.closing(sqlite3.connect(path)) as connection:
+        return connection.execute(
+            "SELECT name, data FROM wavelet_arrays AS a JOIN wavelet_chunks ON array_id = a.id "
+            "WHERE name LIKE 'parts/%/going' OR name LIKE 'parts/%/targets'"
+        ).fetchall()
 
 
 def array_names(path):
@@ -171,7 +214,7 @@ def array_names(path):
 
 def test_the_summary_needs_no_arrays(raster_pyramid, raster_record):
     summary = read_summary(raster_pyramid)
-    assert summary["format"]["version"] == 2
+    assert summary["format"]["version"] == 4
     assert summary["pyramid"]["n_vertices"] == raster_record.origin.n_vertices
     assert summary["source"]["shape"] == [40, 50]
     assert [level["level"] for level in summary["levels"]] == [4, 3, 2, 1, 0]

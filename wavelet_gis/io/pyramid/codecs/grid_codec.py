@@ -1,10 +1,10 @@
 """The numbers of a raster as residuals of their prediction from coarser to finer cells.
 
-The cells are visited on grids of halved steps. Each pass predicts its cells from those around them
-that are known already, on all sides rather than on two, which takes 5 to 25 % fewer bits than the
-predictors that run along rows. The residuals are put in order of how much the neighbours differ
-among themselves, within each pass or over all of them, so that small ones come first and large ones
-last: what a compressor then sees changes but slowly.
+The residuals of each pass (see `grid_walk`) are put in order of how wrong the predictions around
+them were and, where that helps, of how much the neighbours differ, small ones first, in every other
+pass last: what a compressor then sees changes but slowly. Of each class of that order, the lowest
+bits, which are noise, are kept as they are, and what is above them takes four bits: a compressor of
+bytes spends something on each bit of them, even on those that are always 0.
 
 Numbers are integers throughout: those of integer rasters; floats times a divisor that makes
 integers of all of them (hundreds of centimetres); places in a palette where few values differ;
@@ -13,9 +13,8 @@ other floats by the order of their bits.
 
 from __future__ import annotations
 
-import zlib
-from collections.abc import Callable, Iterator
-from functools import partial
+import lzma
+from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,10 +24,20 @@ from wavelet_core import Progress
 from wavelet_core._threads import run_in_blocks
 from wavelet_core._validate import distinct
 from wavelet_core.errors import PyramidError
-from wavelet_core.progress import report
+from wavelet_core.progress import part_of, report
+from wavelet_gis.io.pyramid.codecs.array_codec import WRITTEN_LZMA_FILTERS
+from wavelet_gis.io.pyramid.codecs.former_grids import (
+    FormerResiduals,
+    decode_former_grid,
+    former_relief,
+    pass_by_pass,
+)
+from wavelet_gis.io.pyramid.codecs.grid_walk import MOST_APART, from_zigzag, require, walk, zigzag
 
 __all__ = [
     "DIVISORS",
+    "MOST_LOW_BITS",
+    "RELIEF_WEIGHTS",
     "Numbers",
     "Residuals",
     "decode_grid",
@@ -47,29 +56,27 @@ _LEAST_SPACINGS = 4.0
 #: a few decimals, which repeat.
 MOST_IN_PALETTE = 1 / 16
 
-#: Weights of the near neighbours and of those beyond them, where all are known: what a cubic takes.
-_NEAR, _FAR = 10.0, -1.0
+#: How much the relief around a cell counts beside the errors of its near neighbours, in what the
+#: residuals are put in order of: where white noise lies on slopes, relief tells nothing of it.
+RELIEF_WEIGHTS = (0, 1)
 
-#: Differences of neighbours from here on are one.
-_MOST_RELIEF = 0xFFFF
+#: Residuals with this in four bits, or more, have the rest beyond.
+ESCAPE = 15
 
-#: Where classes of relief begin; they are as wide as a compressor needs them.
-RELIEF_CLASSES = (
-    1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 80, 96, 128, 192, 256,
-    512, 1024, 4096,
-)  # fmt: skip
+#: A number whose upper bits are 2 or 3 has so many; what is below them hardly compresses.
+_UPPER_BITS = 2
 
-#: Stands for a number that a byte does not hold.
-ESCAPE = 255
+#: Low bits that a residual of 64 bits may have.
+MOST_LOW_BITS = 64 - _UPPER_BITS
 
-#: With more of those than this share, numbers are stored whole.
-MOST_BEYOND = 0.02
+#: Residuals of each of the last passes by which the smallest form is found, in so many stretches.
+_SAMPLE, _STRETCHES = 1 << 15, 4
 
-#: Cells that are predicted together: their neighbours stay in the cache.
-_CELLS_AT_ONCE = 1 << 15
+#: Twice the exponent of 1 as a double has it.
+_HALVES_OF_ONE = 2 * 1023
 
-#: Larger rasters are written pass by pass, without trying the other order.
-MOST_TRIED = 3_000_000
+#: Classes of contexts up to 2^34, and that is the last: they are less than one and a half times it.
+_N_CLASSES = 70
 
 
 class Numbers(NamedTuple):
@@ -84,15 +91,6 @@ class Numbers(NamedTuple):
     integers: NDArray[np.int64]
     divisor: int
     palette: NDArray[Any] | None = None
-
-
-class _Pass(NamedTuple):
-    """Cells that are predicted together, by rows and columns, and what from."""
-
-    rows: NDArray[np.int64]
-    columns: NDArray[np.int64]
-    near: tuple[tuple[int, int], ...]
-    far: tuple[tuple[int, int], ...]
 
 
 def integers_of(values: NDArray[Any]) -> Numbers:
@@ -153,21 +151,64 @@ def _mirrored(bits: NDArray[np.int64], itemsize: int) -> NDArray[np.int64]:
 class Residuals(NamedTuple):
     """What the predictions of a raster's numbers leave: 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
 
-    numbers : (n_valid,) unsigned; bytes where nearly all of them are
-    beyond : (n,) uint64, those that bytes do not hold, where the byte is ESCAPE
-    classes : tuple of int, how many there are of each class of relief, which they are in the order
-        of; empty where they are pass by pass, by relief within each
+    pairs : uint8, the upper bits of two residuals each, the first in the upper half
+    low : uint8, the low bits of all residuals, eight in each, the first the highest
+    beyond : uint64, what the upper bits are above ESCAPE, where they are not below it
+    low_bits : tuple of int, how many low bits the residuals of each class have; those of further
+        classes have none
+    relief_weight : int, 1 where relief counts in the class, else 0
     """
 
-    numbers: NDArray[Any]
+    pairs: NDArray[np.uint8]
+    low: NDArray[np.uint8]
     beyond: NDArray[np.uint64]
-    classes: tuple[int, ...]
+    low_bits: tuple[int, ...]
+    relief_weight: int
+
+
+_Classified = tuple[NDArray[np.uint64], NDArray[np.uint8]]
+
+
+class _Found(NamedTuple):
+    """Residuals of a pass row by row, zigzag, the relief there as the former had it, and classes.
+
+    There is an array of classes by each of RELIEF_WEIGHTS.
+    """
+
+    residuals: NDArray[np.uint64]
+    relief: NDArray[np.uint16]
+    classes: tuple[NDArray[np.uint8], ...]
+
+    def sample(self) -> _Found:
+        """Return some stretches of rows, or all of them."""
+        length = len(self.residuals)
+        if length <= _SAMPLE:
+            return self
+        rows = _SAMPLE // _STRETCHES
+        starts = (length - rows) * np.arange(_STRETCHES) // (_STRETCHES - 1)
+        places = (starts[:, np.newaxis] + np.arange(rows)).reshape(-1)
+        classes = tuple(one[places] for one in self.classes)
+        return _Found(self.residuals[places], self.relief[places], classes)
+
+    def classified(self, place: int) -> _Classified:
+        """Return the residuals and the classes by one of the weights."""
+        return self.residuals, self.classes[place]
+
+
+class _Split(NamedTuple):
+    """All residuals as they are stored, but for the low bits."""
+
+    residuals: NDArray[np.uint64]
+    n_low: NDArray[np.uint8]
+    low_bits: tuple[int, ...]
+    pairs: NDArray[np.uint8]
+    beyond: NDArray[np.uint64]
 
 
 def encode_grid(
     integers: NDArray[np.int64], valid: NDArray[np.bool_], progress: Progress | None = None
-) -> Residuals:
-    """Return the residuals of the valid cells, in whichever order takes fewer bytes.
+) -> Residuals | FormerResiduals:
+    """Return the residuals of the valid cells, in whichever order and form takes fewest bytes.
 
     Parameters
     ----------
@@ -176,59 +217,77 @@ def encode_grid(
     valid : (n_rows, n_columns) bool
     progress : callable, optional
         Called with a fraction in [0, 1]; the work stops when it returns False.
+
+    Examples
+    --------
+    Two cells hold 7 and 9. The first is predicted 0, the other 7; what is left becomes 14 and 4, of
+    which the lowest two bits are kept apart.
+
+    >>> residuals = encode_grid(np.array([7, 9]), np.ones((1, 2), dtype=bool))
+    >>> [divmod(int(pair), 16) for pair in residuals.pairs], residuals.low_bits
+    ([(3, 1)], (2,))
     """
     grid = np.zeros(valid.shape, dtype=np.int64)
     grid[valid] = integers
-    parts: list[NDArray[np.uint64]] = []
-    reliefs: list[NDArray[np.uint16]] = []
+    passes: list[_Found] = []
+
+    def contexts(
+        relief: NDArray[np.float64], wrong: NDArray[np.float64]
+    ) -> tuple[NDArray[Any], ...]:
+        classes = [_classes(relief, wrong, weight) for weight in RELIEF_WEIGHTS]
+        return (*former_relief(relief, wrong), *classes)
 
     def keep(
-        predicted: NDArray[np.int64], relief: NDArray[np.uint16], cells: NDArray[np.int64]
+        predicted: NDArray[np.int64],
+        cells: NDArray[np.int64],
+        relief: NDArray[np.uint16],
+        *classes: NDArray[np.uint8],
     ) -> NDArray[np.int64]:
         with np.errstate(over="ignore"):
-            residual = cells - predicted
-        parts.append(((residual << 1) ^ (residual >> 63)).view(np.uint64))
-        reliefs.append(relief)
-        n_done = sum(map(len, parts))
-        report(progress, 0.5 * n_done / max(len(integers), 1))
+            passes.append(_Found(zigzag(cells - predicted), relief, classes))
         return cells
 
-    _walk(grid, valid, keep)
-    by_pass = [
-        part[np.argsort(relief, kind="stable")] for part, relief in zip(parts, reliefs, strict=True)
-    ]
-    first = _as_bytes(np.concatenate(by_pass), ())
-    report(progress, 0.6)
-    if len(integers) > MOST_TRIED:
-        return first
-    classes = np.searchsorted(RELIEF_CLASSES, np.concatenate(reliefs), side="right")
-    counts = np.bincount(classes, minlength=len(RELIEF_CLASSES) + 1)
-    order = np.argsort(classes, kind="stable")
-    second = _as_bytes(np.concatenate(parts)[order], tuple(counts.tolist()))
-    report(progress, 0.7)
-    n_bytes = len(zlib.compress(first.numbers.tobytes(), 6))
-    report(progress, 0.85)
-    return first if n_bytes <= len(zlib.compress(second.numbers.tobytes(), 6)) else second
+    walk(grid, valid, contexts, keep, part_of(progress, 0.0, 0.6))
+    del grid
+    place = _smallest([found.sample() for found in passes[-3:]])
+    report(progress, 0.75)
+    if place == len(RELIEF_WEIGHTS):
+        return pass_by_pass([(found.residuals, found.relief) for found in passes])
+    split = _split([found.classified(place) for found in passes])
+    report(progress, 0.9)
+    planes = _planes(split.residuals, split.n_low, [len(found.residuals) for found in passes])
+    low = np.concatenate(list(_packed(planes)))
+    return Residuals(split.pairs, low, split.beyond, split.low_bits, RELIEF_WEIGHTS[place])
 
 
-def _as_bytes(residuals: NDArray[np.uint64], classes: tuple[int, ...]) -> Residuals:
-    is_beyond = residuals >= ESCAPE
-    if np.count_nonzero(is_beyond) > MOST_BEYOND * len(residuals):
-        widest = np.promote_types(np.uint16, np.min_scalar_type(int(residuals.max(initial=0))))
-        numbers = residuals.astype(widest)  # no bytes, in which ESCAPE would be one of them
-        return Residuals(numbers, np.empty(0, dtype=np.uint64), classes)
-    numbers = np.minimum(residuals, ESCAPE).astype(np.uint8)
-    return Residuals(numbers, residuals[is_beyond], classes)
+def _smallest(passes: list[_Found]) -> int:
+    """Return the place of the weight by which passes take fewest bytes, or one more: the former."""
+    sizes = []
+    for place in range(len(RELIEF_WEIGHTS)):
+        split = _split([found.classified(place) for found in passes])
+        n_bytes = _compressed(split.pairs) + _compressed(split.beyond)
+        sizes.append(n_bytes + int(split.n_low.sum()) // 8)
+    former = pass_by_pass([(found.residuals, found.relief) for found in passes])
+    sizes.append(_compressed(former.numbers) + _compressed(former.beyond))
+    return int(np.argmin(sizes))
+
+
+def _compressed(array: NDArray[Any]) -> int:
+    """Return how many bytes an array takes in the file."""
+    by_byte = array.view(np.uint8).reshape(-1, array.itemsize).T.tobytes()
+    return len(lzma.compress(by_byte, lzma.FORMAT_RAW, filters=WRITTEN_LZMA_FILTERS))
 
 
 def decode_grid(
-    residuals: Residuals, valid: NDArray[np.bool_], progress: Progress | None = None
+    residuals: Residuals | FormerResiduals,
+    valid: NDArray[np.bool_],
+    progress: Progress | None = None,
 ) -> NDArray[np.int64]:
     """Return the integers of the valid cells from their residuals; see `encode_grid`.
 
     Parameters
     ----------
-    residuals : Residuals
+    residuals : Residuals or FormerResiduals
         Of any origin.
     valid : (n_rows, n_columns) bool
     progress : callable, optional
@@ -237,188 +296,135 @@ def decode_grid(
     Raises
     ------
     PyramidError
-        When there is not one residual for each valid cell.
+        When there is not one residual for each valid cell, or it lacks some of its bits.
     """
-    numbers, beyond, classes = residuals
-    is_sound = (
-        numbers.shape == (int(np.count_nonzero(valid)),)
-        and numbers.dtype.kind == "u"
+    if isinstance(residuals, FormerResiduals):
+        return decode_former_grid(residuals, valid, progress)
+    pairs, low, beyond, low_bits, relief_weight = residuals
+    n_valid = int(np.count_nonzero(valid))
+    require(
+        pairs.shape == (-(-n_valid // 2),)
+        and low.ndim == beyond.ndim == 1
+        and pairs.dtype == low.dtype == np.uint8
         and beyond.dtype == np.uint64
-        and (
-            not classes
-            or (
-                len(classes) == len(RELIEF_CLASSES) + 1
-                and min(classes) >= 0
-                and sum(classes) == len(numbers)
-            )
-        )
+        and len(low_bits) <= _N_CLASSES
+        and all(0 <= n_bits <= MOST_LOW_BITS for n_bits in low_bits)
+        and relief_weight in RELIEF_WEIGHTS
     )
-    _require(is_sound)
-    zigzag = numbers.astype(np.uint64)
-    if numbers.dtype == np.uint8:
-        is_beyond = numbers == ESCAPE
-        _require(beyond.shape == (int(np.count_nonzero(is_beyond)),))
-        zigzag[is_beyond] = beyond
-    else:
-        _require(beyond.size == 0)
-    one = np.uint64(1)
-    signed = ((zigzag >> one) ^ (~(zigzag & one) + one)).view(np.int64)
-    starts = np.concatenate([[0], np.cumsum(classes, dtype=np.int64)]) if classes else np.zeros(1)
-    used = starts.astype(np.int64)
+    upper = np.stack([pairs >> 4, pairs & ESCAPE], axis=1).reshape(-1)
+    require(not upper[n_valid:].any() and len(beyond) == np.count_nonzero(upper == ESCAPE))
+    bits_of_class = np.zeros(_N_CLASSES, dtype=np.uint8)
+    bits_of_class[: len(low_bits)] = low_bits
+    n_passes = n_used = n_beyond = n_bits = 0
+
+    def classes(
+        relief: NDArray[np.float64], wrong: NDArray[np.float64]
+    ) -> tuple[NDArray[np.uint8]]:
+        return (_classes(relief, wrong, relief_weight),)
 
     def put(
-        predicted: NDArray[np.int64], relief: NDArray[np.uint16], cells: NDArray[np.int64]
+        predicted: NDArray[np.int64], cells: NDArray[np.int64], of: NDArray[np.uint8]
     ) -> NDArray[np.int64]:
-        if classes:
-            of = np.searchsorted(RELIEF_CLASSES, relief, side="right")
-            counts = np.bincount(of, minlength=len(classes))
-            _require(bool((used[:-1] + counts <= starts[1:]).all()))
-            taken = [
-                signed[u : u + n] for u, n in zip(used.tolist(), counts.tolist(), strict=False)
-            ]
-            used[:-1] += counts
-            found = np.concatenate(taken)
-            order = np.argsort(of, kind="stable")
-        else:
-            found = signed[used[0] : used[0] + len(predicted)]
-            used[0] += len(predicted)
-            order = np.argsort(relief, kind="stable")
-        residual = np.empty(len(predicted), dtype=np.int64)
-        residual[order] = found
+        nonlocal n_passes, n_used, n_beyond, n_bits
+        order = _order(of, n_passes)
+        n_low = bits_of_class[of[order]]
+        number = upper[n_used : n_used + len(of)].astype(np.uint64)
+        is_beyond = number == ESCAPE
+        n_here = int(np.count_nonzero(is_beyond))
+        number[is_beyond] += beyond[n_beyond : n_beyond + n_here]
+        number <<= n_low
+        for bit in range(int(n_low.max(initial=0))):
+            has_bit = n_low > bit
+            n_set = int(np.count_nonzero(has_bit))
+            number[has_bit] |= _bits(low, n_bits, n_set).astype(np.uint64) << np.uint64(bit)
+            n_bits += n_set
+        n_passes, n_used, n_beyond = n_passes + 1, n_used + len(of), n_beyond + n_here
+        residual = np.empty(len(of), dtype=np.int64)
+        residual[order] = from_zigzag(number)
         with np.errstate(over="ignore"):
             return predicted + residual
 
     grid = np.zeros(valid.shape, dtype=np.int64)
-    _walk(grid, valid, put, progress)
+    walk(grid, valid, classes, put, progress)
+    require(len(low) == -(-n_bits // 8))
     return grid[valid]
 
 
-def _require(holds: bool) -> None:
-    if not holds:
-        raise PyramidError("the residuals of the raster do not fit its mask; the file is damaged.")
+def _classes(
+    relief: NDArray[np.float64], wrong: NDArray[np.float64], weight: int
+) -> NDArray[np.uint8]:
+    """Return the classes of cells, two an octave, by how wrong their predictions may be.
+
+    Of a context c, a whole number, the class is 0 for 0, 1 for 1, then 3 for 2, 4 for 3, 5 from 4,
+    6 from 6, 7 from 8, 8 from 12, and so on. Of a double the exponent and the highest bit of the
+    fraction say so exactly.
+    """
+    context = wrong + weight * np.minimum(relief, float(MOST_APART)) if weight else wrong
+    halves = np.ascontiguousarray(context).view(np.int64) >> 51
+    return np.maximum(halves - (_HALVES_OF_ONE - 1), 0).astype(np.uint8)
 
 
-#: Called with the predicted numbers of cells, the relief around them, and their present numbers;
-#: returns the true ones.
-_Exchange = Callable[[NDArray[np.int64], NDArray[np.uint16], NDArray[np.int64]], NDArray[np.int64]]
+def _order(classes: NDArray[np.uint8], n_passes: int) -> NDArray[np.int64]:
+    """Return the order of a pass after so many others: by class, or by falling class."""
+    return np.argsort(classes if n_passes % 2 == 0 else ~classes, kind="stable")
 
 
-def _walk(
-    grid: NDArray[np.int64],
-    valid: NDArray[np.bool_],
-    exchange: _Exchange,
-    progress: Progress | None = None,
-) -> None:
-    """Visit all valid cells of a grid, pass by pass; it is filled, or read, by ``exchange``."""
-    n_known = 0
-    known = np.zeros(valid.shape, dtype=bool)
-    for cells in _passes(valid.shape):
-        at_once = max(_CELLS_AT_ONCE // len(cells.columns), 1)
-        look = partial(_seen, grid, known, valid, cells)
-        by_block = run_in_blocks(look, len(cells.rows), at_once)
-        seen = [np.concatenate(parts) for parts in zip(*by_block, strict=True)]
-        window = _window(cells)
-        here = valid[window]
-        grid[window][here] = exchange(*seen)
-        known[window] = here
-        n_known += here.size
-        report(progress, n_known / valid.size)
+def _split(passes: list[_Classified]) -> _Split:
+    """Return the residuals of all passes in order, their upper bits and how many low ones."""
+    orders = [_order(classes, index) for index, (_, classes) in enumerate(passes)]
+    ordered = list(zip(passes, orders, strict=True))
+    residuals = np.concatenate([part[order] for (part, _), order in ordered])
+    classes = np.concatenate([part[order] for (_, part), order in ordered])
+    del orders, ordered
+    low_bits = _low_bits(residuals, classes)
+    n_low = np.array(low_bits, dtype=np.uint8)[classes]
+    upper = residuals >> n_low
+    symbols = np.minimum(upper, ESCAPE).astype(np.uint8)
+    beyond = upper[symbols == ESCAPE] - np.uint64(ESCAPE)
+    pairs = np.zeros(-(-len(symbols) // 2), dtype=np.uint8)
+    pairs |= symbols[::2] << np.uint8(4)
+    pairs[: len(symbols) // 2] |= symbols[1::2]
+    return _Split(residuals, n_low, low_bits, pairs, beyond)
 
 
-def _seen(
-    grid: NDArray[np.int64],
-    known: NDArray[np.bool_],
-    valid: NDArray[np.bool_],
-    cells: _Pass,
-    start: int,
-    stop: int,
-) -> tuple[NDArray[np.int64], NDArray[np.uint16], NDArray[np.int64]]:
-    """Return what the valid cells of some rows are predicted, the relief there, and the numbers."""
-    part = cells._replace(rows=cells.rows[start:stop])
-    window = _window(part)
-    here = valid[window]
-    predicted, relief = _predict(grid, known, part)
-    return predicted[here], relief[here], grid[window][here]
+def _low_bits(residuals: NDArray[np.uint64], classes: NDArray[np.uint8]) -> tuple[int, ...]:
+    """Return how many low bits the residuals of each class have: by the median among them."""
+    counts = np.bincount(classes)
+    ordered = residuals[np.argsort(classes, kind="stable")]
+    low_bits = []
+    for part in np.split(ordered, np.cumsum(counts)[:-1]):
+        middle = len(part) // 2
+        median = int(np.partition(part, middle)[middle]) if len(part) else 0
+        low_bits.append(max(median.bit_length() - _UPPER_BITS, 0))
+    return tuple(low_bits)
 
 
-def _window(cells: _Pass) -> tuple[slice, slice]:
-    return _stepped(cells.rows), _stepped(cells.columns)
+def _planes(
+    residuals: NDArray[np.uint64], n_low: NDArray[np.uint8], passes: list[int]
+) -> Iterator[NDArray[np.uint8]]:
+    """Yield the low bits of each pass, the lowest of all its residuals first, each as a byte."""
+    stop = 0
+    for length in passes:
+        start, stop = stop, stop + length
+        for bit in range(int(n_low[start:stop].max(initial=0))):
+            with_bit = residuals[start:stop][n_low[start:stop] > bit]
+            yield (with_bit >> np.uint64(bit)).astype(np.uint8) & np.uint8(1)
 
 
-def _stepped(places: NDArray[np.int64]) -> slice:
-    """Return the slice of places that are equally far apart."""
-    step = int(places[1] - places[0]) if len(places) > 1 else 1
-    return slice(int(places[0]), int(places[-1]) + 1, step)
+def _packed(planes: Iterable[NDArray[np.uint8]]) -> Iterator[NDArray[np.uint8]]:
+    """Yield bits, each a byte, as eight a byte; the last byte is filled with zeros."""
+    left = np.empty(0, dtype=np.uint8)
+    for plane in planes:
+        bits = np.concatenate([left, plane])
+        n_whole = len(bits) // 8 * 8
+        yield np.packbits(bits[:n_whole])
+        left = bits[n_whole:]
+    yield np.packbits(left)
 
 
-def _passes(shape: tuple[int, int]) -> Iterator[_Pass]:
-    """Yield the passes: the cells of the coarsest step, then centres and edges of each finer."""
-    n_rows, n_columns = shape
-    step = 1
-    while step < max(shape):
-        step *= 2
-    first = np.arange(0, n_rows, step), np.arange(0, n_columns, step)
-    yield _Pass(*first, (), ())
-    while step > 1:
-        h = step // 2
-        even_rows, odd_rows = np.arange(0, n_rows, step), np.arange(h, n_rows, step)
-        even_columns, odd_columns = np.arange(0, n_columns, step), np.arange(h, n_columns, step)
-        diagonal = ((-h, -h), (-h, h), (h, -h), (h, h))
-        beyond = tuple((3 * r, c) for r, c in diagonal) + tuple((r, 3 * c) for r, c in diagonal)
-        straight = ((-h, 0), (h, 0), (0, -h), (0, h))
-        around = tuple((r, 2 * c) for r, c in diagonal) + tuple((2 * r, c) for r, c in diagonal)
-        for rows, columns, near, far in (
-            (odd_rows, odd_columns, diagonal, beyond),
-            (even_rows, odd_columns, straight, around),
-            (odd_rows, even_columns, straight, around),
-        ):
-            if len(rows) and len(columns):
-                yield _Pass(rows, columns, near, far)
-        step = h
-
-
-def _predict(
-    grid: NDArray[np.int64], known: NDArray[np.bool_], cells: _Pass
-) -> tuple[NDArray[np.int64], NDArray[np.uint16]]:
-    """Return what cells are predicted, and how far their near neighbours lie apart."""
-    shape = (len(cells.rows), len(cells.columns))
-    total, n_near, every = np.zeros(shape), np.zeros(shape), np.ones(shape, dtype=bool)
-    low, high = np.full(shape, np.inf), np.full(shape, -np.inf)
-    for offset in cells.near:
-        value, is_known = _neighbours(grid, known, cells, offset)
-        total += np.where(is_known, value, 0.0)
-        n_near += is_known
-        every &= is_known
-        low = np.minimum(low, np.where(is_known, value, np.inf))
-        high = np.maximum(high, np.where(is_known, value, -np.inf))
-    cubic = _NEAR * total
-    for offset in cells.far:
-        value, is_known = _neighbours(grid, known, cells, offset)
-        cubic += _FAR * value
-        every &= is_known
-    weight = _NEAR * len(cells.near) + _FAR * len(cells.far)
-    mean = np.divide(total, n_near, out=np.zeros(shape), where=n_near > 0)
-    if cells.near:
-        mean = np.where(every, cubic / weight, mean)
-    relief = np.where(n_near > 0, high - low, 0.0)
-    limit = float(2**62)
-    return (
-        np.rint(np.clip(mean, -limit, limit)).astype(np.int64),
-        np.minimum(relief, float(_MOST_RELIEF)).astype(np.uint16),
-    )
-
-
-def _neighbours(
-    grid: NDArray[np.int64], known: NDArray[np.bool_], cells: _Pass, offset: tuple[int, int]
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Return the numbers at an offset from cells, and which of them are known."""
-    shape = len(cells.rows), len(cells.columns)
-    value, is_known = np.zeros(shape), np.zeros(shape, dtype=bool)
-    rows, columns = cells.rows + offset[0], cells.columns + offset[1]
-    row_in = np.flatnonzero((rows >= 0) & (rows < grid.shape[0]))
-    column_in = np.flatnonzero((columns >= 0) & (columns < grid.shape[1]))
-    if len(row_in) and len(column_in):
-        inside = _stepped(row_in), _stepped(column_in)
-        window = _stepped(rows[row_in]), _stepped(columns[column_in])
-        value[inside], is_known[inside] = grid[window], known[window]
-    return value, is_known
+def _bits(packed: NDArray[np.uint8], start: int, count: int) -> NDArray[np.uint8]:
+    """Return so many bits from a place on, each a byte."""
+    stop = start + count
+    require(stop <= 8 * len(packed))
+    part = np.unpackbits(packed[start // 8 : -(-stop // 8)])
+    return part[start % 8 : start % 8 + count]
