@@ -42,7 +42,7 @@ CODES_IN_OCTAVE = 128
 #: The odds that a vertex goes, in sixteenths of their natural logarithm, are the sum of six terms.
 #: They are those of a logistic regression over ten terrains (rasters of 1 to 90 m, clouds of 1 to
 #: 20 points a square metre). Fitted to nine of them, the tables leave 4 to 14 % fewer bytes of the
-#: tenth than classes by forecast alone, 11 % in the mean.
+#: tenth than classes by forecast alone, 11 % in the mean (`benchmarks/cost/odds.py`).
 ODDS = -9
 #: By the octave of the forecast from the middle of those that go, eight below to eight above.
 ODDS_BY_FORECAST = (8, 7, 7, 6, 6, 6, 7, 7, 7, -11, -37, -26, 12, 12, 7, -38, -9)
