@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 from gis import samples
-from gis.samples import write_tif
+from gis.samples import write_las, write_tif
 from helpers import ForecastWriter
 from helpers_meshes import random_delaunay
 
@@ -184,7 +184,7 @@ def test_a_file_that_asks_by_forecasts_is_of_format_2_and_read(part_share, tmp_p
     monkeypatch.setattr(recorded, "LEAST_IN_PARTS", 1000)
     monkeypatch.setattr(recorded, "LEAST_IN_PART", 10)
     monkeypatch.setattr(recorded, "PART_SHARE", part_share)
-    terrain = open_terrain(write_tif(tmp_path / "a.tif", samples.hills(50, 60).astype("f4")))
+    terrain = open_terrain(write_las(tmp_path / "a.laz", 3000))
     sizes = {}
     for name, writer in (("now", Writer), ("before", ForecastWriter)):
         monkeypatch.setattr(recorded, "Writer", writer)
