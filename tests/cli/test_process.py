@@ -1,5 +1,6 @@
 """The command as a process: exit codes, signals, pipes, terminals, and how fast it starts."""
 
+import ctypes
 import os
 import signal
 import subprocess
@@ -8,6 +9,8 @@ import time
 
 import pytest
 from gis.samples import hills, write_tif
+
+from wavelet_gis.cli import interrupts
 
 START = [sys.executable, "-m", "wavelet_gis.cli"]
 
@@ -154,6 +157,46 @@ def test_an_interrupt_at_the_start_is_one_line(tmp_path, after):
     assert process.returncode == 130
     assert err == "terrain-wavelets: error: interrupted; nothing was written\n"
     assert list(tmp_path.iterdir()) == [source]
+
+
+IN_A_CALLBACK = """
+import ctypes, os, signal, time
+from wavelet_gis.cli.interrupts import {raised}, Raised
+callback = ctypes.CFUNCTYPE(None)(lambda: os.kill(os.getpid(), signal.{sent}))
+try:
+    with Raised():
+        callback()
+        print("ignored", flush=True)
+        time.sleep(30)
+except {raised}:
+    print("raised")
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize(("sent", "raised"), [("SIGINT", "Interrupted"), ("SIGTERM", "Terminated")])
+def test_a_signal_in_a_callback_of_the_compiler_is_not_lost(sent, raised):
+    """Python ignores what is raised there; the first run compiles for half a minute."""
+    said = subprocess.run(
+        [sys.executable, "-c", IN_A_CALLBACK.format(sent=sent, raised=raised)],
+        capture_output=True,
+        text=True,
+        timeout=20,
+        check=True,
+        preexec_fn=heed_interrupts,
+    )
+    assert (said.stdout, said.stderr) == ("ignored\nraised\n", "")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_what_else_is_ignored_is_told_as_ever(monkeypatch):
+    heard = []
+    monkeypatch.setattr(sys, "unraisablehook", heard.append)
+    before = sys.unraisablehook
+    with interrupts.Raised():
+        ctypes.CFUNCTYPE(None)(lambda: 1 // 0)()
+    assert sys.unraisablehook is before
+    assert [type(one.exc_value) for one in heard] == [ZeroDivisionError]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")

@@ -16,11 +16,13 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 
 from wavelet_gis._program import PROGRAM
 
 TYPE_CHECKING = False  # `typing` takes a while to load
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from types import FrameType, TracebackType
     from typing import Any
 
@@ -36,6 +38,10 @@ __all__ = [
 
 #: Exit codes, as shells give them: 128 and the number of the signal.
 INTERRUPTED, TERMINATED = 130, 143
+
+
+#: Seconds after which a signal is sent again that came where nothing can be raised.
+_AGAIN = 0.05
 
 
 class Interrupted(KeyboardInterrupt):
@@ -54,12 +60,17 @@ def quit_at_once() -> None:
 class Raised:
     """Raise a signal as `Interrupted` or `Terminated` in a ``with`` block; undone after it.
 
+    What is raised in a callback of a C library, such as the compiler's, is ignored by Python; the
+    signal is sent again then.
+
     Where `quit_at_once` came before, the process is ours and about to end: signals then stay
     ignored after the block.
     """
 
     def __enter__(self) -> None:
         self._before = _install(_raise)
+        self._ignored = sys.unraisablehook
+        sys.unraisablehook = _sent_again(self._ignored)
 
     def __exit__(
         self,
@@ -67,6 +78,7 @@ class Raised:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
+        sys.unraisablehook = self._ignored
         if _quit not in self._before.values():
             for number, handler in self._before.items():
                 signal.signal(number, handler)
@@ -102,3 +114,32 @@ def _quit(number: int, frame: FrameType | None) -> None:
 
 def _raise(number: int, frame: FrameType | None) -> None:
     raise Interrupted if number == signal.SIGINT else Terminated
+
+
+def _sent_again(otherwise: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Return what hears of exceptions that are ignored; others than ours are left as they were."""
+
+    def hear(ignored: Any) -> None:
+        if not isinstance(ignored.exc_value, Interrupted | Terminated):
+            otherwise(ignored)
+            return
+        import threading  # here, since it takes a while to load
+
+        is_interrupt = isinstance(ignored.exc_value, Interrupted)
+        number = signal.SIGINT if is_interrupt else signal.SIGTERM
+        timer = threading.Timer(_AGAIN, _send, (number,))
+        timer.daemon = True
+        timer.start()
+
+    return hear
+
+
+def _send(number: signal.Signals) -> None:
+    """Send a signal to the main thread, which Python has them in."""
+    import threading
+
+    main = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main is not None:
+        signal.pthread_kill(main, number)
+    else:
+        signal.raise_signal(number)
