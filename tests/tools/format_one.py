@@ -17,7 +17,7 @@ from wavelet_gis.io.geopackage import (
     register_attributes_table,
 )
 from wavelet_gis.io.pyramid import array_tables, listed_pyramid, metadata_tables, pyramid_parts
-from wavelet_gis.io.pyramid.codecs.array_codec import encode_array, header_of
+from wavelet_gis.io.pyramid.codecs.array_codec import encode_array, header_of, zigzag
 from wavelet_gis.io.pyramid.codecs.former_grids import (
     RELIEF_CLASSES,
     former_relief,
@@ -25,7 +25,7 @@ from wavelet_gis.io.pyramid.codecs.former_grids import (
     with_escapes,
 )
 from wavelet_gis.io.pyramid.codecs.grid_codec import integers_of
-from wavelet_gis.io.pyramid.codecs.grid_walk import walk, zigzag
+from wavelet_gis.io.pyramid.codecs.grid_walk import walk
 from wavelet_gis.io.pyramid.pyramid_file import write_pyramid
 from wavelet_gis.model.exact_restore import exact_column
 
@@ -121,7 +121,7 @@ def former_residuals(integers, valid):
     parts, reliefs = [], []
 
     def keep(predicted, cells, relief):
-        parts.append(zigzag(cells - predicted))
+        parts.append(zigzag((cells - predicted).view(np.uint64)))
         reliefs.append(relief)
         return cells
 

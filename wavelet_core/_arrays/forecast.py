@@ -15,6 +15,9 @@ from .half_edges import rings_of
 from .outline import outline_rules
 from .surface_cost import Block, Targets, legal_targets
 
+#: The upper half of infinity; that of no number is above it.
+_INFINITE = 0x7F80
+
 #: Entries of rings that are looked at together: a bound on the memory.
 ENTRIES_AT_ONCE = 1 << 19
 
@@ -42,11 +45,16 @@ def forecast_collapses(
 
 def coded(squared, negligible):
     """Return the upper half of each number in single precision, which keeps the order."""
-    with np.errstate(over="ignore"):
-        single = np.where(squared <= negligible, 0.0, squared).astype(np.float32)
-    code = (single.view(np.uint32) >> np.uint32(16)).astype(np.uint16)
-    code[~np.isfinite(single)] = NO_FORECAST
+    code = upper_halves(np.where(squared <= negligible, 0.0, squared))
+    code[code >= _INFINITE] = NO_FORECAST
     return code
+
+
+def upper_halves(numbers):
+    """Return the upper half of each number in single precision, whatever it is."""
+    with np.errstate(over="ignore"):
+        single = numbers.astype(np.float32)
+    return (single.view(np.uint32) >> np.uint32(16)).astype(np.uint16)
 
 
 def match_targets(

@@ -39,7 +39,6 @@ __all__ = [
 #: Exit codes, as shells give them: 128 and the number of the signal.
 INTERRUPTED, TERMINATED = 130, 143
 
-
 #: Seconds after which a signal is sent again that came where nothing can be raised.
 _AGAIN = 0.05
 
@@ -127,19 +126,12 @@ def _sent_again(otherwise: Callable[[Any], Any]) -> Callable[[Any], Any]:
 
         is_interrupt = isinstance(ignored.exc_value, Interrupted)
         number = signal.SIGINT if is_interrupt else signal.SIGTERM
-        timer = threading.Timer(_AGAIN, _send, (number,))
+        main = threading.main_thread().ident  # which Python has signals in
+        if hasattr(signal, "pthread_kill") and main is not None:
+            timer = threading.Timer(_AGAIN, signal.pthread_kill, (main, number))
+        else:
+            timer = threading.Timer(_AGAIN, signal.raise_signal, (number,))
         timer.daemon = True
         timer.start()
 
     return hear
-
-
-def _send(number: signal.Signals) -> None:
-    """Send a signal to the main thread, which Python has them in."""
-    import threading
-
-    main = threading.main_thread().ident
-    if hasattr(signal, "pthread_kill") and main is not None:
-        signal.pthread_kill(main, number)
-    else:
-        signal.raise_signal(number)

@@ -156,50 +156,6 @@ class TestDem:
         assert details.hasSpatialIndex() == details.SpatialIndexPresence.SpatialIndexPresent
         assert tin.extent().width() == pytest.approx(790.0)
 
-    def test_a_pyramid_without_layers_takes_some(self, run, tmp_path):
-        from osgeo_utils.samples import validate_gpkg
-        from qgis.core import (
-            QgsFeedback,
-            QgsProject,
-            QgsProviderRegistry,
-            QgsVectorFileWriter,
-            QgsVectorLayer,
-        )
-        from terrain_wavelets.plugin.qgis_io.geopackage import add_layers
-
-        from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary
-        from wavelet_gis.products.layers import coarse_layers
-
-        path = write_raster(tmp_path / "dem.tif", hills().astype("float32"))
-        out = str(tmp_path / "o.gpkg")
-        run("analysedem", {"INPUT": path, "OUTPUT": out, "LEVELS": 3, "LAYERS": "none"})
-        plain = {"wavelet_metadata", "wavelet_levels", "wavelet_arrays", "wavelet_chunks"}
-
-        def names():
-            connection = (
-                QgsProviderRegistry.instance().providerMetadata("ogr").createConnection(out, {})
-            )
-            return {table.tableName() for table in connection.tables()}
-
-        assert names() == plain
-        assert all(QgsVectorLayer(f"{out}|layername={name}").isValid() for name in plain)
-        before = read_summary(out)
-        options = QgsVectorFileWriter.SaveVectorOptions()
-        options.layerName = "point"
-        options.actionOnExistingFile = QgsVectorFileWriter.CreateOrOverwriteLayer
-        project = QgsProject.instance()
-        point = wkt_layer("Point", ["Point (1 2)"])
-        QgsVectorFileWriter.writeAsVectorFormatV3(point, out, project.transformContext(), options)
-        assert QgsVectorLayer(f"{out}|layername=point").featureCount() == 1
-        geo = read_pyramid(out)
-        add_layers(out, coarse_layers(geo), geo.system.wkt, QgsFeedback(), lambda _: True, 1)
-        tin = QgsVectorLayer(f"{out}|layername=coarse_tin", "tin")
-        assert tin.renderer().type() == "graduatedSymbol"
-        assert tin.hasSpatialIndex() == tin.SpatialIndexPresence.SpatialIndexPresent
-        assert names() >= {*plain, "point", "coarse_tin"}
-        validate_gpkg.check(out)
-        assert read_summary(out) == before
-
     @pytest.mark.parametrize("percent", [1, 20, 60])
     def test_cancel_leaves_nothing_behind(self, run, tmp_path, percent):
         path = write_raster(tmp_path / "dem.tif", hills(200, 200).astype("float32"))

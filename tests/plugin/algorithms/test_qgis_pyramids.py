@@ -1,7 +1,7 @@
 """Pyramids as things one has: offered by dialogs, found again, and on the map when asked for."""
 
 import pytest
-from qgis_layers import Log, hills, write_raster
+from qgis_layers import Log, hills, wkt_layer, write_raster
 
 
 @pytest.fixture
@@ -131,3 +131,45 @@ def test_a_pyramid_is_added_to_the_map_when_asked(run, project, dem, asked):
     }
     layers = {"coarse_tin", "coarse_vertices", "detail_level_00", "detail_level_01"}
     assert opened == (layers if asked else set())
+
+
+def test_a_pyramid_without_layers_takes_some(run, project, dem, tmp_path):
+    from osgeo_utils.samples import validate_gpkg
+    from qgis.core import (
+        QgsFeedback,
+        QgsProviderRegistry,
+        QgsVectorFileWriter,
+        QgsVectorLayer,
+    )
+    from terrain_wavelets.plugin.qgis_io.geopackage import add_layers
+
+    from wavelet_gis.io.pyramid.pyramid_file import read_pyramid, read_summary
+    from wavelet_gis.products.layers import coarse_layers
+
+    out = str(tmp_path / "o.gpkg")
+    run("analysedem", {"INPUT": dem, "OUTPUT": out, "LEVELS": 3, "LAYERS": "none"})
+    plain = {"wavelet_metadata", "wavelet_levels", "wavelet_arrays", "wavelet_chunks"}
+
+    def names():
+        connection = (
+            QgsProviderRegistry.instance().providerMetadata("ogr").createConnection(out, {})
+        )
+        return {table.tableName() for table in connection.tables()}
+
+    assert names() == plain
+    assert all(QgsVectorLayer(f"{out}|layername={name}").isValid() for name in plain)
+    before = read_summary(out)
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    options.layerName = "point"
+    options.actionOnExistingFile = QgsVectorFileWriter.CreateOrOverwriteLayer
+    point = wkt_layer("Point", ["Point (1 2)"])
+    QgsVectorFileWriter.writeAsVectorFormatV3(point, out, project.transformContext(), options)
+    assert QgsVectorLayer(f"{out}|layername=point").featureCount() == 1
+    geo = read_pyramid(out)
+    add_layers(out, coarse_layers(geo), geo.system.wkt, QgsFeedback(), lambda _: True, 1)
+    tin = QgsVectorLayer(f"{out}|layername=coarse_tin", "tin")
+    assert tin.renderer().type() == "graduatedSymbol"
+    assert tin.hasSpatialIndex() == tin.SpatialIndexPresence.SpatialIndexPresent
+    assert names() >= {*plain, "point", "coarse_tin"}
+    validate_gpkg.check(out)
+    assert read_summary(out) == before

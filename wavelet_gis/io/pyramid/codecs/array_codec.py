@@ -31,7 +31,9 @@ __all__ = [
     "decode_blocks",
     "encode_array",
     "header_of",
+    "unzigzag",
     "work_of",
+    "zigzag",
 ]
 
 #: Uncompressed bytes in a chunk, at most. Small enough to be undone in memory twice over.
@@ -402,7 +404,7 @@ def _pack(block: NDArray[Any], header: ArrayHeader, tally: Tally) -> bytes:
         differences[1:] -= bits[:-1]  # wraps round, and so does the sum that undoes it
         bits = differences
     if steps.is_zigzag:
-        bits = _zigzag(bits)
+        bits = zigzag(bits)
     shuffled = bits.reshape(-1).view(np.uint8).reshape(-1, dtype.itemsize).T
     raw = np.ascontiguousarray(shuffled).reshape(-1).data
     if steps.is_lzma:
@@ -437,7 +439,7 @@ def _unpack(job: tuple[int, bytes], header: ArrayHeader) -> NDArray[Any]:
     plain = np.ascontiguousarray(np.frombuffer(raw, np.uint8).reshape(dtype.itemsize, -1).T)
     bits = plain.reshape(-1).view(f"<u{dtype.itemsize}").reshape(shape)
     if steps.is_zigzag:
-        bits = _unzigzag(bits)
+        bits = unzigzag(bits)
     for _ in range(steps.n_differences):
         bits = np.cumsum(bits, axis=0, dtype=bits.dtype)
     if steps.is_zigzag:
@@ -454,13 +456,14 @@ def _in_order_of_value(bits: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]
     return (signed ^ ((signed >> (8 * dtype.itemsize - 1)) & low)).view(bits.dtype)
 
 
-def _zigzag(bits: NDArray[Any]) -> NDArray[Any]:
-    """Return 0, -1, 1, -2, ... as 0, 1, 2, 3, ..."""
+def zigzag(bits: NDArray[Any]) -> NDArray[Any]:
+    """Return the bits of 0, -1, 1, -2, ..., unsigned, as 0, 1, 2, 3, ..."""
     signed = bits.view(f"<i{bits.dtype.itemsize}")
     return ((signed << 1) ^ (signed >> (8 * bits.dtype.itemsize - 1))).view(bits.dtype)
 
 
-def _unzigzag(bits: NDArray[Any]) -> NDArray[Any]:
+def unzigzag(bits: NDArray[Any]) -> NDArray[Any]:
+    """Return 0, 1, 2, 3, ... as the bits of 0, -1, 1, -2, ..."""
     one = bits.dtype.type(1)
     return (bits >> one) ^ (~(bits & one) + one)
 

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wavelet_core import Progress
-from wavelet_gis.io.pyramid.codecs.grid_walk import from_zigzag, require, walk
+from wavelet_gis.io.pyramid.codecs.array_codec import unzigzag
+from wavelet_gis.io.pyramid.codecs.grid_walk import require, walk
 
 __all__ = [
     "ESCAPE",
@@ -103,7 +104,7 @@ def decode_former_grid(
         whole[is_beyond] = beyond
     else:
         require(beyond.size == 0)
-    signed = from_zigzag(whole)
+    signed = unzigzag(whole).view(np.int64)
     starts = np.concatenate([[0], np.cumsum(classes, dtype=np.int64)]) if classes else np.zeros(1)
     used = starts.astype(np.int64)
 

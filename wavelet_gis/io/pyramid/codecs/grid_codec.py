@@ -25,14 +25,14 @@ from wavelet_core._threads import run_in_blocks
 from wavelet_core._validate import distinct
 from wavelet_core.errors import PyramidError
 from wavelet_core.progress import part_of, report
-from wavelet_gis.io.pyramid.codecs.array_codec import WRITTEN_LZMA_FILTERS
+from wavelet_gis.io.pyramid.codecs.array_codec import WRITTEN_LZMA_FILTERS, unzigzag, zigzag
 from wavelet_gis.io.pyramid.codecs.former_grids import (
     FormerResiduals,
     decode_former_grid,
     former_relief,
     pass_by_pass,
 )
-from wavelet_gis.io.pyramid.codecs.grid_walk import MOST_APART, from_zigzag, require, walk, zigzag
+from wavelet_gis.io.pyramid.codecs.grid_walk import MOST_APART, require, walk
 
 __all__ = [
     "DIVISORS",
@@ -244,7 +244,8 @@ def encode_grid(
         *classes: NDArray[np.uint8],
     ) -> NDArray[np.int64]:
         with np.errstate(over="ignore"):
-            passes.append(_Found(zigzag(cells - predicted), relief, classes))
+            residuals = zigzag((cells - predicted).view(np.uint64))
+        passes.append(_Found(residuals, relief, classes))
         return cells
 
     walk(grid, valid, contexts, keep, part_of(progress, 0.0, 0.6))
@@ -340,7 +341,7 @@ def decode_grid(
             n_bits += n_set
         n_passes, n_used, n_beyond = n_passes + 1, n_used + len(of), n_beyond + n_here
         residual = np.empty(len(of), dtype=np.int64)
-        residual[order] = from_zigzag(number)
+        residual[order] = unzigzag(number).view(np.int64)
         with np.errstate(over="ignore"):
             return predicted + residual
 

@@ -20,7 +20,7 @@ from wavelet_core._threads import run_in_blocks
 from wavelet_core.errors import PyramidError
 from wavelet_core.progress import report
 
-__all__ = ["MOST_APART", "Context", "Exchange", "from_zigzag", "require", "walk", "zigzag"]
+__all__ = ["MOST_APART", "Context", "Exchange", "require", "walk"]
 
 #: Weights of the near neighbours and of those beyond them, where all are known: what a cubic takes.
 _NEAR, _FAR = 10.0, -1.0
@@ -102,17 +102,6 @@ def walk(
             errors[window][here] = np.minimum(wrong, np.uint64(MOST_APART))
         n_seen += here.size
         report(progress, n_seen / valid.size)
-
-
-def zigzag(residuals: NDArray[np.int64]) -> NDArray[np.uint64]:
-    """Return 0, -1, 1, -2, ... as 0, 1, 2, 3, ..."""
-    return ((residuals << 1) ^ (residuals >> 63)).view(np.uint64)
-
-
-def from_zigzag(numbers: NDArray[np.uint64]) -> NDArray[np.int64]:
-    """Return 0, 1, 2, 3, ... as 0, -1, 1, -2, ..."""
-    one = np.uint64(1)
-    return ((numbers >> one) ^ (~(numbers & one) + one)).view(np.int64)
 
 
 def require(holds: bool) -> None:
