@@ -3,10 +3,11 @@
     python benchmarks/cost/speed.py [--size 1000] [--dem FILE] [--design GLMN] [--levels 12]
         [--cold]
 
-Prints the seconds to import ``wavelet_core`` and what analyses, the seconds of ``analyse()`` in a process that has
-run it before (warm) and, with ``--cold``, in one that must compile everything first, and the peak
-memory above what the input mesh itself needs, per vertex. The terrain is synthetic (hills of all
-sizes and a little noise) unless a DEM is given. It measures; it does not judge.
+Prints the seconds to import ``wavelet_core`` and what analyses, the seconds of ``analyse()`` in a
+process that has run it before (warm) and, with ``--cold``, in one that must compile everything
+first, and the peak memory above what the input mesh itself needs, per vertex. The terrain is
+synthetic (hills of all sizes and a little noise) unless a DEM is given. It measures; it does not
+judge.
 """
 
 import argparse
