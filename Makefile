@@ -8,6 +8,9 @@ PYTEST := $(BIN)/python -m pytest
 # its own, so that what a file's tests share is made by one of them.
 PARALLEL ?= --numprocesses auto --dist worksteal
 
+# Tests start hundreds of processes, each of which would compile every module anew where this is set.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help demo test test-compiled test-plain test-fast test-exhaustive test-qgis test-qgis-numpy2 matrix coverage lint check docs plugin release clean
 
 help:

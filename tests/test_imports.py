@@ -2,6 +2,7 @@
 
 import ast
 import re
+import subprocess
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -354,3 +355,17 @@ def test_the_root_holds_the_class_factory_and_nothing_else():
 )
 def test_a_wrong_arrow_is_seen(module, source, is_fault):
     assert bool(faults_of(source, module)) == is_fault
+
+
+def test_names_of_the_core_are_imported_when_they_are_first_used():
+    code = (
+        "import sys, wavelet_core\n"
+        "assert not {'scipy', 'numba'} & set(sys.modules)\n"
+        "assert set(wavelet_core._HOMES) <= set(wavelet_core.__all__) <= set(dir(wavelet_core))\n"
+        "for name in wavelet_core.__all__:\n"
+        "    assert getattr(wavelet_core, name) is not None\n"
+        "assert wavelet_core.metrics.surface_errors\n"
+        "assert wavelet_core.analyse.__name__ == 'analyse'\n"
+        "assert not hasattr(wavelet_core, 'no_such_name')\n"
+    )
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)

@@ -23,6 +23,7 @@ import importlib
 import itertools
 import os
 import warnings
+from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
@@ -44,8 +45,9 @@ ENGINES = ("compiled", "arrays", "loops")
 MAX_LOOPS = 50_000
 #: Inputs with more vertices than this make the program mention that numba would be faster.
 ANNOUNCED_FROM = 100_000
-#: Items of a compiled step after which it reports how far it is.
-_ITEMS_BETWEEN_REPORTS = 1 << 17
+#: Items that a thread takes at a time: few enough that all threads end a step at about the same
+#: moment, and that it reports how far it is; enough to be worth the call.
+_LEAST_ITEMS, _MOST_ITEMS = 1 << 11, 1 << 14
 #: Inputs of up to so many vertices are done on whole arrays before numba, which takes some 25 s to
 #: compile the kernels the first time ever, would have begun.
 SMALL_INPUT = 10_000
@@ -237,26 +239,42 @@ def run_in_ranges(step: Kernel, n_items: int, *arguments: Any, called: str = "")
             "input."
         )
     threads = n_threads()
-    if name != "compiled" or n_items < 4096:
+    if name != "compiled" or n_items < 2 * _LEAST_ITEMS:
         step(0, n_items, *arguments)
         return
-    run = step.call
-    n_ranges = max(4 * threads, n_items // _ITEMS_BETWEEN_REPORTS)
+    n_ranges = max(threads, min(8 * threads, n_items // _LEAST_ITEMS), n_items // _MOST_ITEMS)
     bounds = [n_items * k // n_ranges for k in range(n_ranges + 1)]
-    run(0, 0, *arguments)  # compiled once, before the threads race for it
-    if threads == 1:
-        for k, (start, stop) in enumerate(itertools.pairwise(bounds)):
+    step.call(0, 0, *arguments)  # compiled once, before the threads race for it
+    _run_in_threads(step.call, bounds, arguments, threads)
+
+
+def _run_in_threads(
+    run: Callable[..., Any], bounds: list[int], arguments: tuple[Any, ...], threads: int
+) -> None:
+    """Run over the ranges between bounds; this thread takes its share, and reports."""
+    n_ranges = len(bounds) - 1
+    pending = deque(itertools.pairwise(bounds))
+
+    def work(report: Callable[[float], None] | None = None) -> None:
+        while pending:
+            try:
+                start, stop = pending.popleft()
+            except IndexError:  # another thread took the last one
+                return
             run(start, stop, *arguments)
-            report_share((k + 1) / n_ranges)
+            if report is not None:
+                report(1.0 - len(pending) / n_ranges)
+
+    if threads == 1:
+        work(report_share)
         return
-    with ThreadPoolExecutor(threads) as pool:
-        jobs = [
-            pool.submit(run, start, stop, *arguments) for start, stop in itertools.pairwise(bounds)
-        ]
+    with ThreadPoolExecutor(threads - 1) as pool:
+        others = [pool.submit(work) for _ in range(threads - 1)]
         try:
-            for k, job in enumerate(jobs):
-                job.result()
-                report_share((k + 1) / n_ranges)
+            work(report_share)
+            for other in others:
+                other.result()
         except BaseException:
-            pool.shutdown(cancel_futures=True)
+            pending.clear()
             raise
+    report_share(1.0)

@@ -155,11 +155,8 @@ def ask(pen: Pen, sight: Sight, truth: Collapses | None = None) -> Collapses:
     if truth is not None:
         is_odd = np.zeros(len(forecasts.best), dtype=bool)
         is_odd[truth.odd] = True
-        codes, integrals = (
-            np.sort(forecasts.best[truth.odd]),
-            upper_halves(sight.integrals[truth.odd]),
-        )
-        bounds = Bounds(int(codes[-1]), _middle(codes), _middle(np.sort(integrals)))
+        codes, integrals = forecasts.best[truth.odd], upper_halves(sight.integrals[truth.odd])
+        bounds = Bounds(int(codes.max()), _middle(codes), _middle(integrals))
     bounds = pen.level(bounds)
     odd = _ask_going(pen, sight, forecasts, bounds, is_odd)
     if len(odd) == 0:
@@ -179,7 +176,7 @@ def ask(pen: Pen, sight: Sight, truth: Collapses | None = None) -> Collapses:
 
 
 def _middle(codes: NDArray[np.uint16]) -> int:
-    return int(codes[len(codes) // 2])
+    return int(np.partition(codes, len(codes) // 2)[len(codes) // 2])
 
 
 def _forecasts(sight: Sight) -> _Forecasts:
@@ -220,9 +217,19 @@ def _ask_going(
         wins[wins] = goes
         run_in_ranges(take_first, len(active), active, wins, sight.mesh, place)
         taken.append(asked[goes])
-        active = active[place[active] != OUT_OF_QUESTION]
+        active = active[_are_in_question(place, active)]
         is_first = False
     return np.sort(np.concatenate(taken)) if taken else np.empty(0, dtype=np.int32)
+
+
+def _are_in_question(place: NDArray[np.uint64], slots: NDArray[np.int32]) -> NDArray[np.bool_]:
+    found = np.empty(len(slots), dtype=bool)
+
+    def fill(start: int, stop: int) -> None:
+        found[start:stop] = place[slots[start:stop]] != OUT_OF_QUESTION
+
+    run_in_blocks(fill, len(slots))
+    return found
 
 
 def targets_at(
@@ -372,14 +379,22 @@ def _classes_by_odds(sight: Sight, forecasts: _Forecasts, bounds: Bounds) -> _Cl
     by_neighbours = _looked_up(ODDS_BY_NEIGHBOURS, np.arange(256) - 3)
     best, second, n_around = forecasts
 
-    def classes(asked: NDArray[np.int32], is_first: bool) -> NDArray[np.uint8]:
+    def of_block(asked: NDArray[np.int32], is_first: bool) -> NDArray[np.int16]:
         codes, next_best = best[asked], second[asked]
         lead = by_lead[np.maximum(next_best, codes) - codes]  # equal ones may be out of order
         lead[next_best == NO_FORECAST] = ODDS_OF_NO_CHOICE
         odds = by_forecast[codes] + by_integral[upper_halves(sight.integrals[asked])] + lead
         odds += by_neighbours[n_around[asked]] + np.int16(ODDS + ODDS_BY_ROUND[not is_first])
-        middle = N_GOING_CLASSES // 2
-        return np.clip(odds // ODDS_IN_CLASS + middle, 0, N_GOING_CLASSES - 1).astype(np.uint8)
+        return np.clip(odds // ODDS_IN_CLASS + N_GOING_CLASSES // 2, 0, N_GOING_CLASSES - 1)
+
+    def classes(asked: NDArray[np.int32], is_first: bool) -> NDArray[np.uint8]:
+        found = np.empty(len(asked), dtype=np.uint8)
+
+        def fill(start: int, stop: int) -> None:
+            found[start:stop] = of_block(asked[start:stop], is_first)
+
+        run_in_blocks(fill, len(asked))
+        return found
 
     return classes
 

@@ -13,6 +13,8 @@ import json
 import sqlite3
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from itertools import groupby
 from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
@@ -23,12 +25,14 @@ from wavelet_gis.io.pyramid.codecs.array_codec import (
     FILTERS,
     MAX_EXPANSION,
     ArrayHeader,
+    Tally,
     array_checksum,
     closest_header,
     decode_array,
     decode_blocks,
     encode_array,
     header_of,
+    in_order,
 )
 
 __all__ = [
@@ -55,6 +59,9 @@ INDEX = "CREATE INDEX wavelet_chunks_of_array ON wavelet_chunks (array_id, seque
 
 #: More arrays than this are no pyramid of ours, which have six a level and some for the source.
 MOST_ARRAYS = 20_000
+
+#: An array of no more chunks is packed by one thread.
+_CHUNKS_IN_A_THREAD = 2
 
 #: Characters in the name of an array, or in its shape.
 LONGEST_NAME = 200
@@ -95,8 +102,7 @@ def write_arrays(
     packed : callable
         Called with bytes that were compressed; those of an array are `work_of` it.
     """
-    for name, array in arrays.items():
-        header, chunks = _smallest(array, pool, packed)
+    for name, header, chunks, checksum in _packed_arrays(arrays, pool, packed):
         cursor = connection.execute(
             "INSERT INTO wavelet_arrays (name, dtype, shape, filter, chunk_rows, checksum) "
             "VALUES (?,?,?,?,?,?)",
@@ -106,7 +112,7 @@ def write_arrays(
                 json.dumps(header.shape),
                 header.filter,
                 header.chunk_rows,
-                array_checksum(header, [array]),
+                checksum,
             ),
         )
         connection.executemany(
@@ -115,8 +121,43 @@ def write_arrays(
         )
 
 
+class _PackedArray(NamedTuple):
+    """What the two tables say of an array."""
+
+    name: str
+    header: ArrayHeader
+    chunks: Iterable[bytes]
+    checksum: str
+
+
+def _packed_arrays(
+    arrays: Mapping[str, NDArray[Any]], pool: ThreadPoolExecutor, packed: Callable[[int], None]
+) -> Iterator[_PackedArray]:
+    """Yield arrays packed, in order: those of many chunks chunk by chunk, others side by side."""
+    for is_long, group in groupby(arrays.items(), lambda item: _is_long(item[1])):
+        if is_long:
+            for name, array in group:
+                checksum = pool.submit(array_checksum, header_of(array), [array])
+                header, chunks = _smallest(array, pool, packed)
+                yield _PackedArray(name, header, chunks, checksum.result())
+        else:
+            tally = Tally(packed)
+            yield from in_order(partial(_packed_whole, tally), group, pool, tally)
+
+
+def _is_long(array: NDArray[Any]) -> bool:
+    return header_of(array).n_chunks > _CHUNKS_IN_A_THREAD
+
+
+def _packed_whole(tally: Tally, item: tuple[str, NDArray[Any]]) -> _PackedArray:
+    """Pack an array in one thread, which stops where its work is no longer wanted."""
+    name, array = item
+    header, chunks = _smallest(array, None, tally)
+    return _PackedArray(name, header, list(chunks), array_checksum(header, [array]))
+
+
 def _smallest(
-    array: NDArray[Any], pool: ThreadPoolExecutor, packed: Callable[[int], None]
+    array: NDArray[Any], pool: ThreadPoolExecutor | None, packed: Callable[[int], None]
 ) -> tuple[ArrayHeader, Iterable[bytes]]:
     """Return the header of an array and its chunks, never smaller than a reader believes."""
     header = closest_header(array, pool, packed)

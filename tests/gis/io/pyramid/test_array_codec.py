@@ -13,12 +13,13 @@ from hypothesis.extra import numpy as hnp
 
 from wavelet_core.errors import Cancelled, PyramidError
 from wavelet_gis.io.geopackage import create_geopackage, open_for_writing
-from wavelet_gis.io.pyramid.array_tables import SCHEMA, write_arrays
+from wavelet_gis.io.pyramid.array_tables import SCHEMA, read_entries, write_arrays
 from wavelet_gis.io.pyramid.codecs import array_codec
 from wavelet_gis.io.pyramid.codecs.array_codec import (
     FILTERS,
     ArrayHeader,
     Tally,
+    array_checksum,
     closest_header,
     decode_array,
     encode_array,
@@ -260,8 +261,8 @@ def test_compressing_stops_within_a_chunk(monkeypatch):
     array = np.random.default_rng(0).normal(0, 9, 2_000_000).astype(np.int16)
     header = replace(header_of(array), filter="lzma")
     packed = []
-    add = Tally.add
-    monkeypatch.setattr(Tally, "add", lambda self, n: (packed.append(n), add(self, n)))
+    add = Tally.__call__
+    monkeypatch.setattr(Tally, "__call__", lambda self, n: (packed.append(n), add(self, n)))
 
     def stop(n_bytes):
         raise Cancelled("stop")
@@ -282,3 +283,51 @@ def test_what_shrinks_too_well_to_be_believed_counts_once(tmp_path):
         ((name,),) = connection.execute("SELECT filter FROM wavelet_arrays WHERE name = 'ramp'")
     assert name == "delta_shuffle"
     assert sum(seen) == sum(map(work_of, arrays.values()))
+
+
+def test_arrays_side_by_side_are_packed_as_each_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(array_codec, "CHUNK_BYTES", 1 << 14)
+    rng = np.random.default_rng(3)
+    sizes = [10, 3000, 40_000, 0, 2000, 5000, 100_000, 1]
+    arrays = {f"a{k}": rng.normal(0, 9, n).astype(np.int16) for k, n in enumerate(sizes)}
+    arrays["ramp"] = np.arange(4000)  # shrinks too well to be believed
+    create_geopackage(tmp_path / "a.gpkg")
+    with open_for_writing(tmp_path / "a.gpkg") as connection, ThreadPoolExecutor(3) as pool:
+        connection.executescript(SCHEMA)
+        write_arrays(connection, arrays, pool, lambda n_bytes: None)
+        entries = read_entries(connection, with_checksums=True)
+        stored = connection.execute("SELECT array_id, data FROM wavelet_chunks ORDER BY id")
+        chunks = [(array_id, data) for array_id, data in stored]
+    assert list(entries) == list(arrays)
+    alone = []
+    for name, array in arrays.items():
+        entry = entries[name]
+        closest = closest_header(array)
+        assert entry.header in (closest, header_of(array))
+        assert entry.header == closest or name == "ramp"
+        assert entry.checksum == array_checksum(closest, [array])
+        alone += [(entry.array_id, chunk) for chunk in encode_array(array, header=entry.header)]
+    assert chunks == alone
+    assert max(entry.header.n_chunks for entry in entries.values()) > 3
+
+
+def test_packing_arrays_side_by_side_stops_within_each(tmp_path, monkeypatch):
+    monkeypatch.setattr(array_codec, "_LOOK", 0.001)
+    monkeypatch.setattr(array_codec, "_PIECE_BYTES", 1 << 14)
+    rng = np.random.default_rng(0)
+    arrays = {f"a{k}": rng.normal(0, 9, 2_000_000).astype(np.int16) for k in range(3)}
+    made = []
+    pack = array_codec._lzma
+    monkeypatch.setattr(array_codec, "_lzma", lambda *job: made.append(pack(*job)) or made[-1])
+
+    def stop(n_bytes):
+        if n_bytes:
+            raise Cancelled("stop")
+
+    create_geopackage(tmp_path / "a.gpkg")
+    with open_for_writing(tmp_path / "a.gpkg") as connection, ThreadPoolExecutor(2) as pool:
+        connection.executescript(SCHEMA)
+        with pytest.raises(Cancelled):
+            write_arrays(connection, arrays, pool, stop)
+    assert b"" in made  # one ended midway
+    assert len(made) < 4 * 3  # and most were never begun

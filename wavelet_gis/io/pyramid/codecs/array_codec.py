@@ -25,12 +25,14 @@ from wavelet_core.errors import PyramidError
 
 __all__ = [
     "ArrayHeader",
+    "Tally",
     "array_checksum",
     "closest_header",
     "decode_array",
     "decode_blocks",
     "encode_array",
     "header_of",
+    "in_order",
     "unzigzag",
     "work_of",
     "zigzag",
@@ -122,16 +124,27 @@ class Tally:
     Parameters
     ----------
     packed : callable, optional
-        Called with those since it was called before.
+        Called with those since it was called before; where it is another tally, it counts them, and
+        what stops it stops this one.
     """
 
     def __init__(self, packed: Packed | None = None) -> None:
         self._packed = packed
         self._n_bytes = 0
         self._lock = threading.Lock()
-        self.is_stopped = False
+        self._is_stopped = False
 
-    def add(self, n_bytes: int) -> None:
+    @property
+    def is_stopped(self) -> bool:
+        """Whether what is still compressed is wanted by nobody."""
+        whole = self._packed
+        return self._is_stopped or (isinstance(whole, Tally) and whole.is_stopped)
+
+    def stop(self) -> None:
+        """Let those who compress know that they may end."""
+        self._is_stopped = True
+
+    def __call__(self, n_bytes: int) -> None:
         """Count bytes."""
         with self._lock:
             self._n_bytes += n_bytes
@@ -260,7 +273,7 @@ def closest_header(
     def size(name: str) -> int:
         return len(_pack(sample, replace(header, filter=name), tally))
 
-    sizes = dict(zip(FILTERS, _in_order(size, FILTERS, pool, tally), strict=True))
+    sizes = dict(zip(FILTERS, in_order(size, FILTERS, pool, tally), strict=True))
 
     def judged(name: str) -> tuple[float, str]:
         return sizes[name] * (1.0 + LEAST_SAVING * FILTERS[name].is_lzma), name
@@ -305,7 +318,7 @@ def encode_array(
     starts = range(0, header.shape[0], header.chunk_rows) if header.n_bytes else range(0)
     blocks = (array[start : start + header.chunk_rows] for start in starts)
     tally = Tally(packed)
-    return _in_order(lambda block: _pack(block, header, tally), blocks, pool, tally)
+    return in_order(lambda block: _pack(block, header, tally), blocks, pool, tally)
 
 
 def decode_array(
@@ -360,7 +373,7 @@ def decode_blocks(
         Expands several chunks at once.
     """
     n_chunks = 0
-    for block in _in_order(lambda job: _unpack(job, header), enumerate(chunks), pool, Tally()):
+    for block in in_order(lambda job: _unpack(job, header), enumerate(chunks), pool, Tally()):
         yield block
         n_chunks += 1
     if n_chunks != header.n_chunks:
@@ -394,6 +407,47 @@ def array_checksum(header: ArrayHeader, blocks: Iterable[NDArray[Any]]) -> str:
     return digest.hexdigest()
 
 
+def in_order(
+    work: Callable[[Any], Any],
+    jobs: Iterable[Any],
+    pool: ThreadPoolExecutor | None,
+    tally: Tally,
+) -> Iterator[Any]:
+    """Yield the results in the order of the jobs, at most a few jobs ahead of the reader.
+
+    Parameters
+    ----------
+    work : callable
+        Takes a job. In a thread of the pool it may look at ``tally.is_stopped``.
+    jobs : iterable
+        Taken in the thread of the reader.
+    pool : ThreadPoolExecutor, optional
+        Works on several at once.
+    tally : Tally
+        Reported to while the reader waits, and stopped when it has enough.
+    """
+    if pool is None:
+        for job in jobs:
+            result = work(job)
+            tally.report()
+            yield result
+        return
+    remaining = iter(jobs)
+    waiting: list[Future[Any]] = [pool.submit(work, job) for job in islice(remaining, 4)]
+    try:
+        while waiting:
+            while not waiting[0].done():
+                wait(waiting[:1], timeout=_LOOK)
+                tally.report()
+            yield waiting.pop(0).result()
+            waiting.extend(pool.submit(work, job) for job in islice(remaining, 1))
+        tally.report()
+    finally:  # who stops before the end need not wait for the others
+        tally.stop()
+        for job in waiting:
+            job.cancel()
+
+
 def _pack(block: NDArray[Any], header: ArrayHeader, tally: Tally) -> bytes:
     dtype, steps = np.dtype(header.dtype), FILTERS[header.filter]
     bits = np.ascontiguousarray(block, dtype=dtype).view(f"<u{dtype.itemsize}")
@@ -410,7 +464,7 @@ def _pack(block: NDArray[Any], header: ArrayHeader, tally: Tally) -> bytes:
     if steps.is_lzma:
         return _lzma(raw, tally)
     packed = zlib.compress(raw, COMPRESSION_LEVEL)
-    tally.add(raw.nbytes)
+    tally(raw.nbytes)
     return packed
 
 
@@ -423,7 +477,7 @@ def _lzma(raw: memoryview, tally: Tally) -> bytes:
             return b""
         piece = raw[start : start + _PIECE_BYTES]
         packed.append(packer.compress(piece))
-        tally.add(piece.nbytes)
+        tally(piece.nbytes)
     packed.append(packer.flush())
     return b"".join(packed)
 
@@ -498,32 +552,3 @@ def _expand_lzma(chunk: bytes, n_bytes: int) -> tuple[bytes, bool]:
         if not more and expander.needs_input:
             break
     return raw, expander.eof and not expander.unused_data
-
-
-def _in_order(
-    work: Callable[[Any], Any],
-    jobs: Iterable[Any],
-    pool: ThreadPoolExecutor | None,
-    tally: Tally,
-) -> Iterator[Any]:
-    """Yield the results in the order of the jobs, at most a few jobs ahead of the reader."""
-    if pool is None:
-        for job in jobs:
-            result = work(job)
-            tally.report()
-            yield result
-        return
-    remaining = iter(jobs)
-    waiting: list[Future[Any]] = [pool.submit(work, job) for job in islice(remaining, 4)]
-    try:
-        while waiting:
-            while not waiting[0].done():
-                wait(waiting[:1], timeout=_LOOK)
-                tally.report()
-            yield waiting.pop(0).result()
-            waiting.extend(pool.submit(work, job) for job in islice(remaining, 1))
-        tally.report()
-    finally:  # who stops before the end need not wait for the others
-        tally.is_stopped = True
-        for job in waiting:
-            job.cancel()
