@@ -23,7 +23,6 @@ import importlib
 import itertools
 import os
 import warnings
-from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
@@ -45,9 +44,8 @@ ENGINES = ("compiled", "arrays", "loops")
 MAX_LOOPS = 50_000
 #: Inputs with more vertices than this make the program mention that numba would be faster.
 ANNOUNCED_FROM = 100_000
-#: Items that a thread takes at a time: few enough that all threads end a step at about the same
-#: moment, and that it reports how far it is; enough to be worth the call.
-_LEAST_ITEMS, _MOST_ITEMS = 1 << 11, 1 << 14
+#: Items of a compiled step after which it reports how far it is.
+_ITEMS_BETWEEN_REPORTS = 1 << 17
 #: Inputs of up to so many vertices are done on whole arrays before numba, which takes some 25 s to
 #: compile the kernels the first time ever, would have begun.
 SMALL_INPUT = 10_000
@@ -239,42 +237,26 @@ def run_in_ranges(step: Kernel, n_items: int, *arguments: Any, called: str = "")
             "input."
         )
     threads = n_threads()
-    if name != "compiled" or n_items < 2 * _LEAST_ITEMS:
+    if name != "compiled" or n_items < 4096:
         step(0, n_items, *arguments)
         return
-    n_ranges = max(threads, min(8 * threads, n_items // _LEAST_ITEMS), n_items // _MOST_ITEMS)
+    run = step.call
+    n_ranges = max(4 * threads, n_items // _ITEMS_BETWEEN_REPORTS)
     bounds = [n_items * k // n_ranges for k in range(n_ranges + 1)]
-    step.call(0, 0, *arguments)  # compiled once, before the threads race for it
-    _run_in_threads(step.call, bounds, arguments, threads)
-
-
-def _run_in_threads(
-    run: Callable[..., Any], bounds: list[int], arguments: tuple[Any, ...], threads: int
-) -> None:
-    """Run over the ranges between bounds; this thread takes its share, and reports."""
-    n_ranges = len(bounds) - 1
-    pending = deque(itertools.pairwise(bounds))
-
-    def work(report: Callable[[float], None] | None = None) -> None:
-        while pending:
-            try:
-                start, stop = pending.popleft()
-            except IndexError:  # another thread took the last one
-                return
-            run(start, stop, *arguments)
-            if report is not None:
-                report(1.0 - len(pending) / n_ranges)
-
+    run(0, 0, *arguments)  # compiled once, before the threads race for it
     if threads == 1:
-        work(report_share)
+        for k, (start, stop) in enumerate(itertools.pairwise(bounds)):
+            run(start, stop, *arguments)
+            report_share((k + 1) / n_ranges)
         return
-    with ThreadPoolExecutor(threads - 1) as pool:
-        others = [pool.submit(work) for _ in range(threads - 1)]
+    with ThreadPoolExecutor(threads) as pool:
+        jobs = [
+            pool.submit(run, start, stop, *arguments) for start, stop in itertools.pairwise(bounds)
+        ]
         try:
-            work(report_share)
-            for other in others:
-                other.result()
+            for k, job in enumerate(jobs):
+                job.result()
+                report_share((k + 1) / n_ranges)
         except BaseException:
-            pending.clear()
+            pool.shutdown(cancel_futures=True)
             raise
-    report_share(1.0)
